@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Stage: 2D detections become 3D frustums by the lidar points seen through their boxes (paper IV-C).
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "atlas/base/stage.hpp"
+#include "atlas/calibration/rig.hpp"
+#include "atlas/camera/intrinsics_cache.hpp"
+#include "atlas/camera/pose_history.hpp"
+#include "atlas/lidar/sweep_window.hpp"
+#include "atlas/sensor/products.hpp"
+
+namespace atlas {
+
+struct CameraLidarParams {
+  std::vector<std::string> cameras = {"camera_left_front", "camera_left_side", "camera_right_front",
+                                      "camera_right_side"};
+  std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
+  double window_s = 0.5;  ///< lidar sweeps used: stamp in (image - window, image]
+  double max_depth_m = 80.0;
+  int min_points = 3;  ///< fewer points give no distance (the detection is counted as skipped)
+  double object_depth_m =
+      1.0;  ///< far plane = near plane + this: one view does not tell how thick an object is
+  double max_pose_gap_s = 0.5;
+};
+void validate(const CameraLidarParams& params);
+
+class CameraLidarStage : public Stage {
+ public:
+  /// Inputs: 0 tf_static, 1 odometry, then batches of each lidar, then camera_info of each camera, then
+  /// detections of each camera.
+  enum Input : std::size_t { kTfStatic, kOdometry, kFirstLidar };
+  [[nodiscard]] std::size_t lidarInput(std::size_t i) const { return kFirstLidar + i; }
+  [[nodiscard]] std::size_t cameraInfoInput(std::size_t c) const {
+    return kFirstLidar + params_.lidars.size() + c;
+  }
+  [[nodiscard]] std::size_t detectionsInput(std::size_t c) const {
+    return cameraInfoInput(c) + params_.cameras.size();
+  }
+
+  explicit CameraLidarStage(const CameraLidarParams& params);
+  void push(Stamp stamp, const StaticTransforms& transforms);
+  void push(const Odometry& odometry);
+  void push(std::size_t lidar, const BatchedSweepPtr& batches);
+  void push(std::size_t camera, const CameraInfo& info);
+  void push(std::size_t camera, const Detections& detections);
+
+  /// One per Detections, in order per camera; without frustums when there was no pose, intrinsics or points.
+  std::function<void(std::size_t camera, const Frustums&)> on_frustums;
+
+ protected:
+  [[nodiscard]] Stamp heldBackFrom() const override;
+  void onProgress() override;
+  void onEnd() override;
+
+ private:
+  struct Waiting {
+    std::size_t camera;
+    Detections detections;
+    std::optional<CameraInfo> info;       ///< newest at the image's turn
+    Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
+    std::vector<BatchedSweepPtr> sweeps;  ///< the window at the image's turn
+  };
+  void take(std::size_t camera, const Detections& detections);
+  void answerReady();
+  void answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu);
+  std::vector<Frustum> frustumsOf(const Waiting& waiting, const Intrinsics& intrinsics,
+                                  const Pose& T_map_camera);
+
+  CameraLidarParams params_;
+  Rig rig_;
+  PoseHistory poses_;
+  SweepWindow window_;
+  std::vector<std::optional<CameraInfo>> camera_info_;  ///< newest per camera
+  std::vector<IntrinsicsCache> intrinsics_;             ///< per camera
+  std::deque<Waiting> waiting_;                         ///< in merged order
+};
+
+}  // namespace atlas

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Stage: for every frame of a camera (its camera_info is the trigger) the aggregated cloud projected into it
+// (paper IV-E).
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "atlas/base/stage.hpp"
+#include "atlas/calibration/rig.hpp"
+#include "atlas/camera/intrinsics_cache.hpp"
+#include "atlas/camera/pose_history.hpp"
+#include "atlas/lidar/sweep_window.hpp"
+#include "atlas/sensor/products.hpp"
+
+namespace atlas {
+
+struct DepthParams {
+  std::vector<std::string> cameras = {"camera_ir"};
+  std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
+  double window_s = 0.5;  ///< lidar sweeps used: stamp in (image - window, image]
+  double min_depth_m = 0.5;
+  double max_depth_m = 100.0;
+  int splat_px = 1;  ///< half side of the square that a point covers: 0 = one pixel, 1 = 3x3
+  double max_pose_gap_s = 0.5;
+};
+void validate(const DepthParams& params);
+
+class DepthStage : public Stage {
+ public:
+  /// Inputs: 0 tf_static, 1 odometry, then batches of each lidar, then camera_info of each camera.
+  enum Input : std::size_t { kTfStatic, kOdometry, kFirstLidar };
+  [[nodiscard]] std::size_t lidarInput(std::size_t i) const { return kFirstLidar + i; }
+  [[nodiscard]] std::size_t cameraInfoInput(std::size_t c) const {
+    return kFirstLidar + params_.lidars.size() + c;
+  }
+
+  explicit DepthStage(const DepthParams& params);
+  void push(Stamp stamp, const StaticTransforms& transforms);
+  void push(const Odometry& odometry);
+  void push(std::size_t lidar, const BatchedSweepPtr& batches);
+  void push(std::size_t camera, const CameraInfo& info);
+
+  /// One per camera_info, in stamp order over all cameras; all NaN when there was no pose or no cloud, an
+  /// empty Mat when the camera_info is unusable (counted).
+  std::function<void(std::size_t camera, const DepthImagePtr&)> on_depth;
+
+ protected:
+  [[nodiscard]] Stamp heldBackFrom() const override;
+  void onProgress() override;
+  void onEnd() override;
+
+ private:
+  struct Waiting {
+    std::size_t camera;
+    std::uint32_t image_index;
+    CameraInfo info;
+    Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
+    std::vector<BatchedSweepPtr> sweeps;  ///< the window at the image's turn
+  };
+  void take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index);
+  void answerReady();
+  void answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu);
+  /// kNoPoints when no sweep of the window has a pose.
+  Outcome<cv::Mat> render(const Waiting& waiting, const Intrinsics& intrinsics,
+                          const Outcome<Pose>& T_map_imu);
+
+  DepthParams params_;
+  Rig rig_;
+  PoseHistory poses_;
+  SweepWindow window_;
+  std::vector<IntrinsicsCache> intrinsics_;  ///< per camera
+  std::vector<std::uint32_t> image_count_;   ///< per camera: index of its next image
+  std::deque<Waiting> waiting_;              ///< in merged order
+};
+
+}  // namespace atlas

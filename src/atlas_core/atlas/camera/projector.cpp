@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "atlas/camera/projector.hpp"
+
+#include <algorithm>
+
+namespace atlas {
+namespace {
+constexpr int kBorderSteps = 64;        // bearings taken along each side of the image
+constexpr double kBorderMargin = 0.01;  // what a side may bow out between two of them, and float rounding
+}  // namespace
+
+Projector::Projector(const CameraModel& model, double min_depth_m, double max_depth_m)
+    : fx_(static_cast<float>(model.fx())),
+      fy_(static_cast<float>(model.fy())),
+      cx_(static_cast<float>(model.cx())),
+      cy_(static_cast<float>(model.cy())),
+      right_(static_cast<float>(model.width()) - 0.5F),
+      bottom_(static_cast<float>(model.height()) - 0.5F),
+      min_depth_m_(static_cast<float>(min_depth_m)),
+      max_depth_m_(static_cast<float>(max_depth_m)),
+      max_tangent_sq_(static_cast<float>(model.maxTangent() * model.maxTangent())),
+      distortion_(model.distortion().cast<float>()) {
+  boundField(model);
+}
+
+void Projector::boundField(const CameraModel& model) {
+  Eigen::Vector2d low(0.0, 0.0), high(0.0, 0.0);
+  bool known = true;
+  const auto take = [&](double u, double v) {
+    const auto bearing = model.bearing({u, v});
+    known = known && bearing.has_value();
+    if (!bearing) return;
+    low = low.cwiseMin(bearing->head<2>());
+    high = high.cwiseMax(bearing->head<2>());
+  };
+  for (int i = 0; i <= kBorderSteps; ++i) {
+    const double u = -0.5 + model.width() * static_cast<double>(i) / kBorderSteps;
+    const double v = -0.5 + model.height() * static_cast<double>(i) / kBorderSteps;
+    take(u, -0.5);
+    take(u, model.height() - 0.5);
+    take(-0.5, v);
+    take(model.width() - 0.5, v);
+  }
+  const double limit = model.maxTangent();
+  if (!known) {  // the image is larger than what the lens shows
+    low.setConstant(-limit);
+    high.setConstant(limit);
+  }
+  min_x_ = static_cast<float>(std::max(-limit, low.x() - kBorderMargin));
+  max_x_ = static_cast<float>(std::min(limit, high.x() + kBorderMargin));
+  min_y_ = static_cast<float>(std::max(-limit, low.y() - kBorderMargin));
+  max_y_ = static_cast<float>(std::min(limit, high.y() + kBorderMargin));
+}
+
+}  // namespace atlas

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "atlas/lidar/voxel.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace atlas {
+namespace {
+
+constexpr double kMaxCoordinate = 2147483000.0;  ///< voxels; inside int32
+
+/// floor, without the library call that plain x86-64 makes for std::floor.
+std::int32_t floorToInt(double value) {
+  const auto truncated = static_cast<std::int32_t>(value);
+  return truncated - (value < static_cast<double>(truncated) ? 1 : 0);
+}
+
+bool fits(double value) { return value > -kMaxCoordinate && value < kMaxCoordinate; }  // false for NaN
+
+}  // namespace
+
+std::optional<VoxelKey> voxelOf(double x, double y, double z, double edge_m) {
+  const double vx = x / edge_m, vy = y / edge_m, vz = z / edge_m;
+  if (!fits(vx) || !fits(vy) || !fits(vz)) return std::nullopt;
+  return VoxelKey{floorToInt(vx), floorToInt(vy), floorToInt(vz)};
+}
+
+VoxelFilter::VoxelFilter(double edge_m, VoxelPoint keep, std::size_t expected)
+    : edge_m_(edge_m), keep_(keep), index_(expected) {
+  if (!(edge_m > 0.0)) {
+    throw std::invalid_argument("voxel filter: edge_m must be positive, got " + std::to_string(edge_m));
+  }
+}
+
+void VoxelFilter::add(const LidarPoint& point) {
+  const std::optional<VoxelKey> key = voxelOf(point.x, point.y, point.z, edge_m_);
+  if (!key) return;
+  const std::uint32_t voxel = index_.insert(*key);
+  if (voxel == points_.size()) points_.push_back(point);
+  if (keep_ == VoxelPoint::kFirst) return;
+  if (voxel == sums_.size()) sums_.emplace_back();
+  Sum& sum = sums_[voxel];
+  sum.x += static_cast<double>(point.x);
+  sum.y += static_cast<double>(point.y);
+  sum.z += static_cast<double>(point.z);
+  sum.intensity += static_cast<double>(point.intensity);
+  ++sum.count;
+}
+
+std::vector<LidarPoint> VoxelFilter::take() {
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const double count = sums_[i].count;
+    points_[i].x = static_cast<float>(sums_[i].x / count);
+    points_[i].y = static_cast<float>(sums_[i].y / count);
+    points_[i].z = static_cast<float>(sums_[i].z / count);
+    points_[i].intensity = static_cast<float>(sums_[i].intensity / count);
+  }
+  return std::move(points_);
+}
+
+std::vector<LidarPoint> voxelFiltered(const std::vector<LidarPoint>& points, double edge_m, VoxelPoint keep) {
+  VoxelFilter filter(edge_m, keep, points.size() / 4);
+  for (const LidarPoint& point : points) filter.add(point);
+  return filter.take();
+}
+
+}  // namespace atlas

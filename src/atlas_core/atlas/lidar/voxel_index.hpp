@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Voxels numbered in the order in which they are first met. The numbers, not the hash table, are what results
+// are made from: no result depends on a hash function. Open addressing with linear probing at a load of at
+// most one half.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace atlas {
+
+struct VoxelKey {
+  std::int32_t x = 0, y = 0, z = 0;
+  bool operator==(const VoxelKey& o) const { return x == o.x && y == o.y && z == o.z; }
+};
+
+class VoxelIndex {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+  explicit VoxelIndex(std::size_t expected = 0) { rehash(expected); }
+
+  /// The number of the voxel; a new one gets the next number, starting at 0.
+  std::uint32_t insert(const VoxelKey& key) {
+    if (2 * (keys_.size() + 1) > slots_.size()) rehash(2 * keys_.size());
+    std::uint32_t& slot = slots_[slotOf(key)];
+    if (slot == kNone) {
+      slot = static_cast<std::uint32_t>(keys_.size());
+      keys_.push_back(key);
+    }
+    return slot;
+  }
+  /// kNone when the voxel was never inserted.
+  [[nodiscard]] std::uint32_t find(const VoxelKey& key) const { return slots_[slotOf(key)]; }
+  /// By number.
+  [[nodiscard]] const std::vector<VoxelKey>& keys() const { return keys_; }
+  [[nodiscard]] std::size_t size() const { return keys_.size(); }
+
+ private:
+  [[nodiscard]] std::size_t slotOf(const VoxelKey& key) const {
+    // multiplication by odd constants and folding of the high half: neighbours spread over the table
+    std::uint64_t h = static_cast<std::uint32_t>(key.x) * 0x9E3779B97F4A7C15ULL;
+    h ^= static_cast<std::uint32_t>(key.y) * 0xC2B2AE3D27D4EB4FULL;
+    h ^= static_cast<std::uint32_t>(key.z) * 0x165667B19E3779F9ULL;
+    h = (h ^ (h >> 32)) * 0xD6E8FEB86659FD93ULL;
+    std::size_t slot = static_cast<std::size_t>(h >> 32) & mask_;
+    while (slots_[slot] != kNone && !(keys_[slots_[slot]] == key)) slot = (slot + 1) & mask_;
+    return slot;
+  }
+  void rehash(std::size_t expected) {
+    std::size_t slots = 64;
+    while (slots < 2 * (expected + 1)) slots *= 2;
+    slots_.assign(slots, kNone);
+    mask_ = slots - 1;
+    for (std::size_t i = 0; i < keys_.size(); ++i) slots_[slotOf(keys_[i])] = static_cast<std::uint32_t>(i);
+  }
+
+  std::vector<VoxelKey> keys_;
+  std::vector<std::uint32_t> slots_;
+  std::size_t mask_ = 0;
+};
+
+}  // namespace atlas

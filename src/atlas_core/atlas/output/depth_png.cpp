@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "atlas/output/depth_png.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+namespace atlas {
+namespace {
+constexpr float kUnitsPerMetre = 256.0F;
+constexpr float kLargestUnit = 65535.0F;
+constexpr int kPngCompression = 1;  // of 0..9
+}  // namespace
+
+cv::Mat depthTo16Bit(const cv::Mat& depth_m) {
+  cv::Mat units(depth_m.rows, depth_m.cols, CV_16UC1, cv::Scalar(0));
+  for (int row = 0; row < depth_m.rows; ++row) {
+    const float* depth = depth_m.ptr<float>(row);
+    std::uint16_t* unit = units.ptr<std::uint16_t>(row);
+    for (int column = 0; column < depth_m.cols; ++column) {
+      const float value = std::floor(depth[column] * kUnitsPerMetre + 0.5F);
+      if (value > 0.0F && value <= kLargestUnit)
+        unit[column] = static_cast<std::uint16_t>(value);  // NaN stays 0
+    }
+  }
+  return units;
+}
+
+cv::Mat depthPreview(const cv::Mat& depth_m, double max_depth_m) {
+  cv::Mat grey(depth_m.rows, depth_m.cols, CV_8UC1, cv::Scalar(0));
+  const auto scale = static_cast<float>(254.0 / max_depth_m);
+  for (int row = 0; row < depth_m.rows; ++row) {
+    const float* depth = depth_m.ptr<float>(row);
+    for (int column = 0; column < depth_m.cols; ++column) {
+      if (!(depth[column] > 0.0F)) continue;
+      const float value = std::max(1.0F, 255.0F - scale * depth[column]);
+      grey.ptr<std::uint8_t>(row)[column] = static_cast<std::uint8_t>(value + 0.5F);
+    }
+  }
+  return grey;
+}
+
+std::vector<std::uint8_t> encodePng(const cv::Mat& image) {
+  if (image.empty()) throw std::invalid_argument("PNG: image must have pixels, got 0 x 0");
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, kPngCompression});
+  return bytes;
+}
+
+}  // namespace atlas

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Point clouds as bytes of a binary PCD file, version 0.7
+// (https://pointclouds.org/documentation/tutorials/pcd_file_format.html): unorganized (height 1), little
+// endian, fields packed without gaps.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "atlas/base/outcome.hpp"
+#include "atlas/sensor/sensor.hpp"
+
+namespace atlas {
+
+/// One voxel of the map.
+struct MapPoint {
+  float x = 0, y = 0, z = 0;  ///< m, map: mean of the returns
+  float intensity = 0;        ///< mean, as recorded
+  std::uint32_t count = 0;    ///< returns
+};
+static_assert(sizeof(MapPoint) == 20, "MapPoint is written as it lies in memory");
+
+/// A whole file: x y z intensity time (float32) and ring (uint16), in the order of the points, NaN kept.
+[[nodiscard]] std::string encodePcd(const std::vector<LidarPoint>& points);
+/// The points of a file that holds at least x y z as float32; other known fields are taken too, unknown ones
+/// ignored. kBadLayout when it is no such binary PCD file, or a truncated one.
+[[nodiscard]] Outcome<std::vector<LidarPoint>> decodePcd(const std::string& bytes);
+
+/// Header for `points` MapPoints (x y z intensity as float32, count as uint32), whose bytes follow it as they
+/// lie in memory.
+[[nodiscard]] std::string mapPcdHeader(std::uint64_t points);
+
+}  // namespace atlas

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#include "atlas/output/ply.hpp"
+
+namespace atlas {
+
+std::string mapPlyHeader(std::uint64_t points) {
+  return "ply\nformat binary_little_endian 1.0\ncomment frame map, east north up, m; count: returns per "
+         "voxel\n"
+         "element vertex " +
+         std::to_string(points) +
+         "\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\nproperty uint "
+         "count\n"
+         "end_header\n";
+}
+
+}  // namespace atlas

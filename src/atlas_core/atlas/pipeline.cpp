@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#include "atlas/pipeline.hpp"
+
+namespace atlas {
+
+void addPipeline(LocalGraph& graph, const PipelineParams& params) {
+  graph.add([&](LocalGraph::Bus& bus) { return bindLocalization(bus, params.localization); });
+  graph.add([&](LocalGraph::Bus& bus) { return bindDeskew(bus, params.deskew); });
+  graph.add([&](LocalGraph::Bus& bus) { return bindAggregate(bus, params.aggregate); });
+  graph.add([&](LocalGraph::Bus& bus) { return bindObstacles(bus, params.obstacles); });
+  graph.add([&](LocalGraph::Bus& bus) { return bindCameraLidar(bus, params.camera_lidar); });
+  graph.add([&](LocalGraph::Bus& bus) { return bindThermal(bus, params.thermal); });
+  graph.add([&](LocalGraph::Bus& bus) { return bindDepth(bus, params.depth); });
+}
+
+}  // namespace atlas

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// The whole data path in order: the first file to read.
+//
+//   imu/data, gnss/fix, gnss/heading -> localization -> odometry
+//   <lidar>/points, odometry         -> deskew       -> <lidar>/batches
+//   <lidar>/batches                  -> aggregate    -> cloud
+//   <lidar>/batches, odometry        -> obstacles    -> obstacles
+//   <camera>/detections, batches     -> camera_lidar -> <camera>/frustums
+//   frustums, camera_ir/camera_info  -> thermal      -> camera_ir/projected_detections
+//   batches, <camera>/camera_info    -> depth        -> <camera>/depth/image
+//
+// Each bindXxx names a stage's inputs and outputs once. The nodelets bind the same functions to topics (atlas_ros::StageLink), the
+// offline replay binds them to a LocalGraph: the two cannot drift apart.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "atlas/base/local_graph.hpp"
+#include "atlas/camera/camera_lidar_stage.hpp"
+#include "atlas/camera/depth_stage.hpp"
+#include "atlas/camera/thermal_stage.hpp"
+#include "atlas/lidar/aggregate_stage.hpp"
+#include "atlas/lidar/deskew_stage.hpp"
+#include "atlas/lidar/obstacle_stage.hpp"
+#include "atlas/localization/localization_stage.hpp"
+
+namespace atlas {
+
+struct PipelineParams {
+  LocalizationParams localization;
+  DeskewParams deskew;
+  AggregateParams aggregate;
+  ObstacleParams obstacles;
+  CameraLidarParams camera_lidar;
+  ThermalParams thermal;
+  DepthParams depth;
+};
+
+/// Transforms that never change count before every other event.
+constexpr Stamp kStaticStamp = 0;
+
+/// Adds the main stages to a graph, in order of the data path.
+void addPipeline(LocalGraph& graph, const PipelineParams& params);
+
+/// One output per name: `<name><suffix>`; the returned function emits on output i.
+template <class T, class Bus>
+std::function<void(std::size_t, const T&)> outputs(Bus& bus, const std::vector<std::string>& names, const std::string& suffix) {
+  std::vector<std::function<void(const T&)>> emits;
+  for (const std::string& name : names) emits.push_back(bus.template output<T>(name + suffix));
+  return [emits](std::size_t i, const T& value) { emits.at(i)(value); };
+}
+/// Input first + i takes `<names[i]><suffix>`, pushed as stage.push(i, value).
+template <class StageType, class T, class Bus>
+void inputs(Bus& bus, std::size_t first, const std::vector<std::string>& names, const std::string& suffix) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    bus.template input<StageType, T>(first + i, names[i] + suffix, [i](StageType& s, const T& value) { s.push(i, value); });
+  }
+}
+template <class StageType, class Bus>
+void rigAndOdometry(Bus& bus) {
+  bus.template input<StageType, StaticTransforms>(
+      0, "tf_static", [](StageType& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
+  bus.template input<StageType, Odometry>(1, "odometry", [](StageType& s, const Odometry& o) { s.push(o); });
+}
+
+template <class Bus>
+StageFactory bindLocalization(Bus& bus, const LocalizationParams& params) {
+  using S = LocalizationStage;
+  validate(params);
+  bus.template input<S, StaticTransforms>(S::kTfStatic, "tf_static",
+                                          [](S& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
+  bus.template input<S, GnssFix>(S::kGnssFix, "gnss/fix", [](S& s, const GnssFix& fix) { s.push(fix); });
+  bus.template input<S, GnssHeading>(S::kGnssHeading, "gnss/heading", [](S& s, const GnssHeading& h) { s.push(h); });
+  bus.template input<S, ImuSample>(S::kImu, "imu/data", [](S& s, const ImuSample& imu) { s.push(imu); });
+  const auto odometry = bus.template output<Odometry>("odometry");
+  const auto anchor = bus.template output<Anchor>("anchor");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_odometry = odometry;
+    stage->on_anchor = anchor;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindDeskew(Bus& bus, const DeskewParams& params) {
+  using S = DeskewStage;
+  validate(params);
+  rigAndOdometry<S>(bus);
+  inputs<S, SweepPtr>(bus, S::kFirstLidar, params.lidars, "/points");
+  const auto batches = outputs<BatchedSweepPtr>(bus, params.lidars, "/batches");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_batches = batches;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindAggregate(Bus& bus, const AggregateParams& params) {
+  using S = AggregateStage;
+  validate(params);
+  inputs<S, BatchedSweepPtr>(bus, 0, params.lidars, "/batches");
+  const auto cloud = bus.template output<MapCloudPtr>("cloud");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_cloud = cloud;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindObstacles(Bus& bus, const ObstacleParams& params) {
+  using S = ObstacleStage;
+  validate(params);
+  bus.template input<S, Odometry>(S::kOdometry, "odometry", [](S& s, const Odometry& o) { s.push(o); });
+  inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
+  const auto obstacles = bus.template output<Obstacles>("obstacles");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_obstacles = obstacles;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindCameraLidar(Bus& bus, const CameraLidarParams& params) {
+  using S = CameraLidarStage;
+  validate(params);
+  const std::size_t first_info = S::kFirstLidar + params.lidars.size();
+  rigAndOdometry<S>(bus);
+  inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
+  inputs<S, CameraInfo>(bus, first_info, params.cameras, "/camera_info");
+  inputs<S, Detections>(bus, first_info + params.cameras.size(), params.cameras, "/detections");
+  const auto frustums = outputs<Frustums>(bus, params.cameras, "/frustums");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_frustums = frustums;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindThermal(Bus& bus, const ThermalParams& params) {
+  using S = ThermalStage;
+  validate(params);
+  rigAndOdometry<S>(bus);
+  bus.template input<S, CameraInfo>(S::kThermalInfo, params.thermal_camera + "/camera_info",
+                                    [](S& s, const CameraInfo& info) { s.pushThermal(info); });
+  inputs<S, Frustums>(bus, S::kFirstCamera, params.cameras, "/frustums");
+  const auto projected = bus.template output<ProjectedDetections>(params.thermal_camera + "/projected_detections");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_projected = projected;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindDepth(Bus& bus, const DepthParams& params) {
+  using S = DepthStage;
+  validate(params);
+  rigAndOdometry<S>(bus);
+  inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
+  inputs<S, CameraInfo>(bus, S::kFirstLidar + params.lidars.size(), params.cameras, "/camera_info");
+  const auto depth = outputs<DepthImagePtr>(bus, params.cameras, "/depth/image");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_depth = depth;
+    return stage;
+  };
+}
+
+}  // namespace atlas
