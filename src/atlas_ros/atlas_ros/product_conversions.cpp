@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <memory>
+
+#include "atlas_ros/conversions.hpp"
+#include "atlas_ros/point_cloud.hpp"
+
+namespace atlas_ros {
+namespace {
+
+constexpr const char* kMapFrame = "map";
+constexpr const char* kBaseFrame = "base_link";
+
+geometry_msgs::Point point(const Eigen::Vector3d& p) {
+  geometry_msgs::Point msg;
+  msg.x = p.x();
+  msg.y = p.y();
+  msg.z = p.z();
+  return msg;
+}
+Eigen::Vector3d fromPoint(const geometry_msgs::Point& p) { return {p.x, p.y, p.z}; }
+
+geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v) {
+  geometry_msgs::Vector3 msg;
+  msg.x = v.x();
+  msg.y = v.y();
+  msg.z = v.z();
+  return msg;
+}
+Eigen::Vector3d fromVector3(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+nav_msgs::Odometry toMsg(const atlas::Odometry& odometry) {
+  nav_msgs::Odometry msg;
+  msg.header.stamp = toTime(odometry.stamp);
+  msg.header.frame_id = kMapFrame;
+  msg.child_frame_id = kBaseFrame;
+  msg.pose.pose = toMsg(odometry.T_map_imu);
+  msg.twist.twist.linear = vector3(odometry.velocity_imu_mps);
+  msg.twist.twist.angular = vector3(odometry.angular_velocity_imu_radps);
+  std::copy(odometry.pose_covariance.begin(), odometry.pose_covariance.end(), msg.pose.covariance.begin());
+  std::copy(odometry.twist_covariance.begin(), odometry.twist_covariance.end(), msg.twist.covariance.begin());
+  return msg;
+}
+
+atlas::Outcome<atlas::Odometry> fromMsg(const nav_msgs::Odometry& msg) {
+  const auto pose = fromMsg(msg.pose.pose);
+  if (!pose) return pose.reason();
+  atlas::Odometry odometry;
+  odometry.stamp = fromTime(msg.header.stamp);
+  odometry.T_map_imu = *pose;
+  odometry.velocity_imu_mps = fromVector3(msg.twist.twist.linear);
+  odometry.angular_velocity_imu_radps = fromVector3(msg.twist.twist.angular);
+  if (!odometry.velocity_imu_mps.allFinite() || !odometry.angular_velocity_imu_radps.allFinite()) {
+    return atlas::Reason::kNotFinite;
+  }
+  std::copy(msg.pose.covariance.begin(), msg.pose.covariance.end(), odometry.pose_covariance.begin());
+  std::copy(msg.twist.covariance.begin(), msg.twist.covariance.end(), odometry.twist_covariance.begin());
+  return odometry;
+}
+
+sensor_msgs::NavSatFix toMsg(const atlas::Anchor& anchor) {
+  sensor_msgs::NavSatFix msg;
+  msg.header.stamp = toTime(anchor.stamp);
+  msg.header.frame_id = kMapFrame;
+  msg.status.status = sensor_msgs::NavSatStatus::STATUS_FIX;
+  msg.status.service = sensor_msgs::NavSatStatus::SERVICE_GPS;
+  msg.latitude = anchor.position.latitude_deg;
+  msg.longitude = anchor.position.longitude_deg;
+  msg.altitude = anchor.position.altitude_m;
+  msg.position_covariance_type = sensor_msgs::NavSatFix::COVARIANCE_TYPE_KNOWN;  // exact by definition: zeros
+  return msg;
+}
+atlas::Anchor anchorFromMsg(const sensor_msgs::NavSatFix& msg) {
+  return {fromTime(msg.header.stamp), {msg.latitude, msg.longitude, msg.altitude}};
+}
+
+atlas_msgs::PointBatches toMsg(const atlas::BatchedSweep& batched) {
+  atlas_msgs::PointBatches msg;
+  msg.header.stamp = toTime(batched.stamp);
+  msg.header.frame_id = batched.frame;
+  msg.points = toMsg(*batched.sweep);
+  msg.batches.reserve(batched.batches.size());
+  for (const atlas::Batch& batch : batched.batches) {
+    atlas_msgs::PointBatch m;
+    m.first = batch.first;
+    m.count = batch.count;
+    m.stamp_ns = batch.stamp;
+    m.T_map_lidar = toMsg(batch.T_map_lidar);
+    msg.batches.push_back(m);
+  }
+  msg.batch_of_point = batched.batch_of_point;
+  msg.T_map_lidar = toMsg(batched.T_map_lidar);
+  return msg;
+}
+
+atlas::Outcome<atlas::BatchedSweepPtr> fromMsg(const atlas_msgs::PointBatches& msg) {
+  const auto sweep = fromMsg(msg.points);
+  if (!sweep) return sweep.reason();
+  auto batched = std::make_shared<atlas::BatchedSweep>();
+  batched->stamp = fromTime(msg.header.stamp);
+  batched->frame = msg.header.frame_id;
+  batched->sweep = *sweep;
+  const std::size_t points = batched->sweep->points.size();
+  const bool ordered = msg.batch_of_point.empty();
+  if (!ordered && msg.batch_of_point.size() != points) return atlas::Reason::kBadLayout;
+  for (const std::uint16_t batch : msg.batch_of_point) {
+    if (batch >= msg.batches.size()) return atlas::Reason::kBadLayout;
+  }
+  batched->batches.reserve(msg.batches.size());
+  for (const atlas_msgs::PointBatch& m : msg.batches) {
+    if (ordered && static_cast<std::size_t>(m.first) + m.count > points) return atlas::Reason::kBadLayout;
+    const auto pose = fromMsg(m.T_map_lidar);
+    if (!pose) return pose.reason();
+    batched->batches.push_back({m.first, m.count, m.stamp_ns, *pose});
+  }
+  batched->batch_of_point = msg.batch_of_point;
+  const auto pose = fromMsg(msg.T_map_lidar);
+  if (!pose) return pose.reason();
+  batched->T_map_lidar = *pose;
+  return atlas::BatchedSweepPtr(batched);
+}
+
+atlas_msgs::ObstacleArray toMsg(const atlas::Obstacles& obstacles) {
+  atlas_msgs::ObstacleArray msg;
+  msg.header.stamp = toTime(obstacles.stamp);
+  msg.header.frame_id = kMapFrame;
+  for (const atlas::Obstacle& obstacle : obstacles.obstacles) {
+    atlas_msgs::Obstacle m;
+    m.center = point(obstacle.center);
+    m.yaw = obstacle.yaw_rad;
+    m.size = vector3(obstacle.size);
+    m.points = obstacle.points;
+    msg.obstacles.push_back(m);
+  }
+  return msg;
+}
+atlas::Obstacles fromMsg(const atlas_msgs::ObstacleArray& msg) {
+  atlas::Obstacles obstacles;
+  obstacles.stamp = fromTime(msg.header.stamp);
+  for (const atlas_msgs::Obstacle& m : msg.obstacles) {
+    obstacles.obstacles.push_back({fromPoint(m.center), m.yaw, fromVector3(m.size), m.points});
+  }
+  return obstacles;
+}
+
+atlas_msgs::FrustumArray toMsg(const atlas::Frustums& frustums) {
+  atlas_msgs::FrustumArray msg;
+  msg.header.stamp = toTime(frustums.stamp);
+  msg.header.frame_id = kMapFrame;
+  msg.camera = frustums.camera;
+  msg.image_index = frustums.image_index;
+  for (const atlas::Frustum& frustum : frustums.frustums) {
+    atlas_msgs::Frustum m;
+    m.detection_index = frustum.detection_index;
+    m.detection = toMsg(frustum.detection);
+    m.distance_m = frustum.distance_m;
+    m.range_m = frustum.range_m;
+    m.depth_sigma_m = frustum.depth_sigma_m;
+    m.points = frustum.points;
+    m.position = point(frustum.position);
+    for (std::size_t i = 0; i < frustum.corners.size(); ++i) m.corners[i] = point(frustum.corners[i]);
+    msg.frustums.push_back(m);
+  }
+  return msg;
+}
+atlas::Frustums fromMsg(const atlas_msgs::FrustumArray& msg) {
+  atlas::Frustums frustums;
+  frustums.stamp = fromTime(msg.header.stamp);
+  frustums.camera = msg.camera;
+  frustums.image_index = msg.image_index;
+  for (const atlas_msgs::Frustum& m : msg.frustums) {
+    atlas::Frustum frustum;
+    frustum.detection_index = m.detection_index;
+    frustum.detection = fromMsg(m.detection);
+    frustum.distance_m = m.distance_m;
+    frustum.range_m = m.range_m;
+    frustum.depth_sigma_m = m.depth_sigma_m;
+    frustum.points = m.points;
+    frustum.position = fromPoint(m.position);
+    for (std::size_t i = 0; i < frustum.corners.size(); ++i) frustum.corners[i] = fromPoint(m.corners[i]);
+    frustums.frustums.push_back(frustum);
+  }
+  return frustums;
+}
+
+atlas_msgs::ProjectedDetections toMsg(const atlas::ProjectedDetections& projected) {
+  atlas_msgs::ProjectedDetections msg;
+  msg.header.stamp = toTime(projected.detections.stamp);
+  msg.header.frame_id = projected.detections.frame;
+  msg.image_index = projected.detections.image_index;
+  msg.selected = projected.selected;
+  for (const atlas::Stamp stamp : projected.source_stamps) msg.source_stamps.push_back(toTime(stamp));
+  for (const atlas::Detection2d& box : projected.detections.boxes) msg.detections.push_back(toMsg(box));
+  msg.source_index = projected.source_index;
+  return msg;
+}
+atlas::ProjectedDetections fromMsg(const atlas_msgs::ProjectedDetections& msg) {
+  atlas::ProjectedDetections projected;
+  projected.detections.stamp = fromTime(msg.header.stamp);
+  projected.detections.frame = msg.header.frame_id;
+  projected.detections.image_index = msg.image_index;
+  projected.selected = msg.selected != 0;
+  for (const ros::Time& time : msg.source_stamps) projected.source_stamps.push_back(fromTime(time));
+  for (const atlas_msgs::Detection2d& m : msg.detections) projected.detections.boxes.push_back(fromMsg(m));
+  projected.source_index = msg.source_index;
+  return projected;
+}
+
+}  // namespace atlas_ros

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "atlas_ros/stage_link.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace atlas_ros {
+namespace {
+/// Progress is published in steps of event time: fine enough for the pacing, cheap enough at hundreds of Hz.
+constexpr atlas::Duration kProgressStep = 20 * atlas::kMillisecond;
+}  // namespace
+
+StageLink::StageLink(const ros::NodeHandle& handle, std::string stage_name) : handle_(handle), name_(std::move(stage_name)) {}
+
+StageLink::~StageLink() = default;
+
+ros::SubscriberStatusCallback StageLink::onConnect(const std::string& topic) {
+  return [this, topic](const ros::SingleSubscriberPublisher& subscriber) {
+    links_.insert(topic + " " + subscriber.getSubscriberName());
+    sayHello();
+  };
+}
+
+void StageLink::start(atlas::StageFactory factory) {
+  factory_ = std::move(factory);
+  hello_ = handle_.advertise<atlas_msgs::StageHello>("hello", kKeepAll);
+  const std::string progress = handle_.resolveName("progress");
+  progress_ = handle_.advertise<atlas_msgs::StageProgress>("progress", kKeepAll, onConnect(progress));
+  subscribers_.push_back(handle_.subscribe<atlas_msgs::StageProgress>(
+      "progress", kKeepAll, boost::function<void(const atlas_msgs::StageProgressConstPtr&)>(
+                                [this](const atlas_msgs::StageProgressConstPtr& m) { guarded([&] { onProgress(*m); }); })));
+  subscribers_.push_back(handle_.subscribe<atlas_msgs::GraphStart>(
+      "graph_start", kKeepAll, boost::function<void(const atlas_msgs::GraphStartConstPtr&)>(
+                                   [this](const atlas_msgs::GraphStartConstPtr& m) { guarded([&] { onGraphStart(*m); }); })));
+  subscribers_.push_back(handle_.subscribe<std_msgs::Empty>(
+      "hello_request", kKeepAll,
+      boost::function<void(const std_msgs::EmptyConstPtr&)>([this](const std_msgs::EmptyConstPtr&) { sayHello(); })));
+}
+
+void StageLink::sayHello() {
+  if (!hello_) return;
+  atlas_msgs::StageHello msg;
+  msg.stage = name_;
+  msg.process = ros::this_node::getName();
+  for (const auto& [index, input] : inputs_) msg.inputs.push_back(input.topic);
+  msg.inputs.push_back(handle_.resolveName("progress"));
+  msg.inputs.push_back(handle_.resolveName("graph_start"));
+  for (const auto& output : outputs_) msg.outputs.push_back(output->topic);
+  msg.outputs.push_back(handle_.resolveName("progress"));
+  msg.links.assign(links_.begin(), links_.end());
+  hello_.publish(msg);
+}
+
+void StageLink::onGraphStart(const atlas_msgs::GraphStart& msg) {
+  if (running_ || failed_) return;
+  epoch_ = msg.epoch;
+  running_ = true;
+  published_ = atlas::kBeginOfTime;
+  for (const auto& output : outputs_) output->count = 0;
+  unusable_ = {};
+  stage_ = factory_();
+  const std::set<std::string> produced(msg.topics.begin(), msg.topics.end());
+  for (auto& [index, input] : inputs_) input.count = 0;
+  for (std::size_t i = 0; i < stage_->inputs(); ++i) {
+    if (inputs_.count(i) == 0) stage_->finish(i);  // not bound to any topic
+  }
+  for (auto& [index, input] : inputs_) {
+    if (produced.count(input.topic) == 0) stage_->finish(index);
+    std::deque<std::function<void()>> waiting;
+    waiting.swap(input.waiting);
+    for (auto& push : waiting) onMessage(index, std::move(push));
+    applyProgress(index);
+  }
+  afterEvents();
+}
+
+void StageLink::onMessage(std::size_t index, std::function<void()> push) {
+  Input& input = inputs_.at(index);
+  if (!running_) {
+    input.waiting.push_back(std::move(push));
+    return;
+  }
+  ++input.count;
+  push();
+  applyProgress(index);
+  afterEvents();
+}
+
+void StageLink::onProgress(const atlas_msgs::StageProgress& msg) {
+  for (std::size_t i = 0; i < msg.topics.size(); ++i) {
+    for (auto& [index, input] : inputs_) {
+      if (input.topic != msg.topics[i]) continue;
+      input.progress.push_back({msg.epoch, msg.counts[i], msg.watermark_ns});
+      applyProgress(index);
+    }
+  }
+  afterEvents();
+}
+
+void StageLink::applyProgress(std::size_t index) {
+  Input& input = inputs_.at(index);
+  while (running_ && !input.progress.empty()) {
+    const PendingProgress next = input.progress.front();
+    if (next.epoch > epoch_ || (next.epoch == epoch_ && next.count > input.count)) return;
+    input.progress.pop_front();
+    if (next.epoch == epoch_) stage_->advance(index, next.watermark);
+  }
+}
+
+void StageLink::afterEvents() {
+  if (!running_ || failed_) return;
+  const atlas::Stamp reached = stage_->progress();
+  const bool ended = stage_->ended();
+  const bool due = reached > published_ && (published_ == atlas::kBeginOfTime || reached - published_ >= kProgressStep);
+  if (!due && !ended) return;
+  published_ = reached;
+  if (ended && on_end) on_end();
+  publishProgress();
+  if (ended) running_ = false;
+}
+
+void StageLink::publishProgress() {
+  atlas_msgs::StageProgress msg;
+  msg.stage = name_;
+  msg.epoch = epoch_;
+  msg.watermark_ns = published_;
+  msg.finished = stage_->ended();
+  for (const auto& output : outputs_) {
+    msg.topics.push_back(output->topic);
+    msg.counts.push_back(output->count);
+  }
+  if (stage_->ended()) {
+    for (const atlas::Counters* counters : {&stage_->counters(), static_cast<const atlas::Counters*>(&unusable_)}) {
+      for (const auto& [name, value] : counters->all()) {
+        msg.counter_names.push_back(name);
+        msg.counter_values.push_back(value);
+      }
+    }
+    const atlas::EventMerge& merge = stage_->merge();
+    for (std::size_t i = 0; i < merge.streams(); ++i) {
+      msg.counter_names.push_back("received " + merge.name(i));
+      msg.counter_values.push_back(merge.received(i));
+      msg.counter_names.push_back("late " + merge.name(i));
+      msg.counter_values.push_back(merge.late(i));
+    }
+  }
+  progress_.publish(msg);
+}
+
+void StageLink::guarded(const std::function<void()>& body) {
+  if (failed_) return;
+  try {
+    body();
+  } catch (const std::exception& error) {
+    failed_ = true;
+    ROS_FATAL("%s: %s; the run fails", name_.c_str(), error.what());
+    atlas_msgs::StageProgress msg;
+    msg.stage = name_;
+    msg.epoch = epoch_;
+    msg.watermark_ns = published_;
+    msg.failed = true;
+    msg.error = error.what();
+    progress_.publish(msg);
+  }
+}
+
+}  // namespace atlas_ros

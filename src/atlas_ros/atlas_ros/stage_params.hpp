@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// The YAML keys of every stage: field name = key. One list serves the nodelets (ParamReader) and the offline replay (YamlReader).
+#pragma once
+
+#include "atlas/pipeline.hpp"
+
+namespace atlas_ros {
+
+template <class Reader>
+void readParams(Reader& reader, atlas::LocalizationParams& p) {
+  reader.read("filter", p.filter);
+  reader.read("gnss_antenna_frame", p.gnss_antenna_frame);
+  atlas::PositioningParams& q = p.positioning;
+  reader.read("gnss_horizontal_sigma_m", q.gnss_horizontal_sigma_m);
+  reader.read("gnss_vertical_sigma_m", q.gnss_vertical_sigma_m);
+  reader.read("gnss_heading_sigma_rad", q.gnss_heading_sigma_rad);
+  reader.read("accelerometer_noise_mps2_sqrt_hz", q.accelerometer_noise_mps2_sqrt_hz);
+  reader.read("gyroscope_noise_radps_sqrt_hz", q.gyroscope_noise_radps_sqrt_hz);
+  reader.read("tilt_time_constant_s", q.tilt_time_constant_s);
+  reader.read("velocity_heading_min_speed_mps", q.velocity_heading_min_speed_mps);
+  reader.read("max_imu_gap_s", q.max_imu_gap_s);
+}
+
+template <class Reader>
+void readParams(Reader& reader, atlas::DeskewParams& p) {
+  reader.read("lidars", p.lidars);
+  reader.read("batches_per_sweep", p.batches_per_sweep);
+  reader.read("min_range_m", p.min_range_m);
+  reader.read("max_range_m", p.max_range_m);
+  reader.read("max_pose_gap_s", p.max_pose_gap_s);
+}
+
+template <class Reader>
+void readParams(Reader& reader, atlas::AggregateParams& p) {
+  reader.read("lidars", p.lidars);
+  reader.read("window_s", p.window_s);
+  reader.read("period_s", p.period_s);
+  reader.read("voxel_m", p.voxel_m);
+}
+
+template <class Reader>
+void readParams(Reader& reader, atlas::ObstacleParams& p) {
+  reader.read("lidars", p.lidars);
+  reader.read("window_s", p.window_s);
+  reader.read("max_range_m", p.max_range_m);
+  reader.read("voxel_m", p.voxel_m);
+  reader.read("ground_cell_m", p.ground_cell_m);
+  reader.read("ground_tolerance_m", p.ground_tolerance_m);
+  reader.read("max_height_m", p.max_height_m);
+  reader.read("cluster_tolerance_m", p.cluster_tolerance_m);
+  reader.read("min_points", p.min_points);
+  reader.read("max_points", p.max_points);
+}
+
+template <class Reader>
+void readParams(Reader& reader, atlas::CameraLidarParams& p) {
+  reader.read("cameras", p.cameras);
+  reader.read("lidars", p.lidars);
+  reader.read("window_s", p.window_s);
+  reader.read("max_depth_m", p.max_depth_m);
+  reader.read("min_points", p.min_points);
+  reader.read("object_depth_m", p.object_depth_m);
+  reader.read("max_pose_gap_s", p.max_pose_gap_s);
+}
+
+template <class Reader>
+void readParams(Reader& reader, atlas::ThermalParams& p) {
+  reader.read("thermal_camera", p.thermal_camera);
+  reader.read("cameras", p.cameras);
+  reader.read("max_time_difference_s", p.max_time_difference_s);
+  reader.read("min_box_px", p.min_box_px);
+  reader.read("min_visible_fraction", p.min_visible_fraction);
+  reader.read("max_pose_gap_s", p.max_pose_gap_s);
+}
+
+template <class Reader>
+void readParams(Reader& reader, atlas::DepthParams& p) {
+  reader.read("cameras", p.cameras);
+  reader.read("lidars", p.lidars);
+  reader.read("window_s", p.window_s);
+  reader.read("min_depth_m", p.min_depth_m);
+  reader.read("max_depth_m", p.max_depth_m);
+  reader.read("splat_px", p.splat_px);
+  reader.read("max_pose_gap_s", p.max_pose_gap_s);
+}
+
+}  // namespace atlas_ros

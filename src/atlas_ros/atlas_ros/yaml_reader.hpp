@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// ParamReader's twin for a YAML file without a ROS master: every key present, every present key read.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <set>
+#include <stdexcept>
+#include <string>
+
+namespace atlas_ros {
+
+class YamlReader {
+ public:
+  /// `name` is used in messages, e.g. "bud.yaml: deskew".
+  YamlReader(YAML::Node node, std::string name) : node_(std::move(node)), name_(std::move(name)) {
+    if (!node_ || !node_.IsMap()) throw std::invalid_argument(name_ + ": missing or not a map");
+  }
+  template <class T>
+  void read(const std::string& key, T& value) {
+    const YAML::Node field = node_[key];
+    if (!field) throw std::invalid_argument(name_ + ": missing parameter " + key);
+    try {
+      value = field.as<T>();
+    } catch (const YAML::Exception&) {
+      throw std::invalid_argument(name_ + ": parameter " + key + " has the wrong type");
+    }
+    read_.insert(key);
+  }
+  template <class T>
+  void readOptional(const std::string& key, T& value) {
+    if (node_[key]) read(key, value);
+  }
+  void rejectUnread() const {
+    for (const auto& entry : node_) {
+      const auto key = entry.first.as<std::string>();
+      if (read_.count(key) == 0) throw std::invalid_argument(name_ + ": unknown parameter " + key);
+    }
+  }
+
+ private:
+  YAML::Node node_;
+  std::string name_;
+  std::set<std::string> read_;
+};
+
+}  // namespace atlas_ros
