@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "open_input.hpp"
+
+#include <ros/package.h>
+
+#include <stdexcept>
+
+#include "atlas_ros/bag_reader.hpp"
+#include "record/open_record.hpp"
+
+namespace atlas_loader {
+namespace {
+
+atlas::RecordOptions::Images imagesFrom(const std::string& text) {
+  if (text == "h265") return atlas::RecordOptions::Images::kPackets;
+  if (text == "jpeg") return atlas::RecordOptions::Images::kEncoded;
+  if (text == "raw") return atlas::RecordOptions::Images::kPixels;
+  throw std::invalid_argument("images must be h265, jpeg or raw, got '" + text + "'");
+}
+
+}  // namespace
+
+std::unique_ptr<atlas::RecordReader> openInput(const InputOptions& options) {
+  if (options.bag.empty() == options.record.empty()) {
+    throw std::invalid_argument("name one input: a bag or a record, got bag '" + options.bag + "' and record '" +
+                                options.record + "'");
+  }
+  if (!options.bag.empty()) {
+    atlas_ros::BagOptions bag;
+    bag.start_s = options.start_s;
+    bag.duration_s = options.duration_s;
+    bag.topics = options.topics;
+    return atlas_ros::openBag(options.bag, bag);
+  }
+  atlas::RecordOptions record;
+  record.calibration_dir = options.calibration;
+  record.packaged_rig_dir = packageFile("atlas_bringup", "config/rigs/bud");
+  record.start_s = options.start_s;
+  record.duration_s = options.duration_s;
+  record.topics = options.topics;
+  record.images = imagesFrom(options.images);
+  return atlas::openRecord(options.record, record);
+}
+
+std::string configurationFor(const std::vector<atlas::StreamInfo>& streams) {
+  for (const atlas::StreamInfo& stream : streams) {
+    if (stream.topic == "velodyne/points") return "kitti";
+  }
+  return "bud";
+}
+
+std::string packageFile(const std::string& package, const std::string& relative) {
+  const std::string folder = ros::package::getPath(package);
+  if (folder.empty()) throw std::runtime_error("package " + package + " is not in ROS_PACKAGE_PATH");
+  return folder + "/" + relative;
+}
+
+}  // namespace atlas_loader

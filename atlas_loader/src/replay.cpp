@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "replay.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "atlas/pipeline.hpp"
+#include "atlas_ros/stage_params.hpp"
+#include "atlas_ros/yaml_reader.hpp"
+#include "files/writer_stages.hpp"
+#include "progress_bar.hpp"
+#include "video_decode_stage.hpp"
+#include "writer_params.hpp"
+
+namespace atlas_loader {
+namespace {
+
+std::atomic<bool> g_interrupted{false};  // set by the signal handler, which can reach nothing else
+
+/// Reads one section of the configuration.
+class Configuration {
+ public:
+  explicit Configuration(const std::string& file) : file_(file) {
+    try {
+      root_ = YAML::LoadFile(file);
+    } catch (const YAML::Exception& error) {
+      throw std::invalid_argument("configuration " + file + ": " + error.what());
+    }
+  }
+  template <class Params>
+  Params section(const std::string& name) {
+    read_.insert(name);
+    atlas_ros::YamlReader reader(root_[name], file_ + ": " + name);
+    Params params;
+    readParams(reader, params);
+    reader.rejectUnread();
+    return params;
+  }
+  /// Sections that nobody reads are typing errors.
+  void rejectUnread() const {
+    for (const auto& entry : root_) {
+      const auto name = entry.first.as<std::string>();
+      if (read_.count(name) == 0) throw std::invalid_argument(file_ + ": unknown section " + name);
+    }
+  }
+  [[nodiscard]] std::string json() const { return toTree(root_).dump(); }
+
+ private:
+  static nlohmann::json toTree(const YAML::Node& node) {
+    if (node.IsMap()) {
+      nlohmann::json map = nlohmann::json::object();
+      for (const auto& entry : node) map[entry.first.as<std::string>()] = toTree(entry.second);
+      return map;
+    }
+    if (node.IsSequence()) {
+      nlohmann::json list = nlohmann::json::array();
+      for (const auto& entry : node) list.push_back(toTree(entry));
+      return list;
+    }
+    return node.IsNull() ? nlohmann::json() : nlohmann::json(node.Scalar());
+  }
+  std::string file_;
+  YAML::Node root_;
+  std::set<std::string> read_;
+};
+
+/// Adds the stages in order of the data path; the configuration decides all their parameters.
+void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const ReplayOptions& options) {
+  using atlas_ros::readParams;
+  const auto decoder = configuration.section<VideoDecodeParams>("video_decoder");
+  graph.add([&](atlas::LocalGraph::Bus& bus) { return bindVideoDecoder(bus, decoder); });
+  atlas::PipelineParams params;
+  params.localization = configuration.section<atlas::LocalizationParams>("localization");
+  params.deskew = configuration.section<atlas::DeskewParams>("deskew");
+  params.aggregate = configuration.section<atlas::AggregateParams>("aggregate");
+  params.obstacles = configuration.section<atlas::ObstacleParams>("obstacles");
+  params.camera_lidar = configuration.section<atlas::CameraLidarParams>("camera_lidar");
+  params.thermal = configuration.section<atlas::ThermalParams>("thermal");
+  params.depth = configuration.section<atlas::DepthParams>("depth");
+  addPipeline(graph, params);
+  atlas::WriterParams writers;
+  writers.cloud = configuration.section<atlas::CloudWriterParams>("cloud_writer");
+  writers.map = configuration.section<atlas::MapWriterParams>("map_writer");
+  writers.depth = configuration.section<atlas::DepthWriterParams>("depth_writer");
+  writers.frustum = configuration.section<atlas::FrustumWriterParams>("frustum_writer");
+  writers.thermal = configuration.section<atlas::ThermalWriterParams>("thermal_writer");
+  writers.overlay = configuration.section<atlas::OverlayWriterParams>("overlay_writer");
+  configuration.section<atlas::TrajectoryWriterParams>("trajectory_writer");
+  configuration.section<atlas::ObstacleWriterParams>("obstacle_writer");
+  configuration.rejectUnread();
+  for (const std::string& extra : options.write) {
+    if (extra != "deskewed") throw std::invalid_argument("--write knows deskewed, got '" + extra + "'");
+    writers.write_deskewed = true;
+  }
+  atlas::addWriters(graph, writers, options.out);
+}
+
+/// Hands an event to the graph with the type that its stages expect.
+void feed(atlas::LocalGraph& graph, const atlas::StreamInfo& stream, const atlas::Event& event) {
+  if (stream.kind == atlas::StreamKind::kCompressedImage) {
+    graph.publish(stream.topic, atlas::EncodedImage{std::get<atlas::ImagePtr>(event.payload)});
+    return;
+  }
+  std::visit([&](const auto& value) { graph.publish(stream.topic, value); }, event.payload);
+}
+
+}  // namespace
+
+atlas::RunSummary replay(const ReplayOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto reader = openInput(options.input);
+  const std::string config = !options.config.empty()
+                                 ? options.config
+                                 : packageFile("atlas_bringup", "config/" + configurationFor(reader->streams()) + ".yaml");
+  Configuration configuration(config);
+  std::filesystem::create_directories(options.out);
+  atlas::LocalGraph graph;
+  buildGraph(graph, configuration, options);
+
+  atlas::RunSummary summary;
+  summary.mode = "offline";
+  summary.configuration = configuration.json();
+  summary.inputs.push_back(atlas::hashInput(options.input.bag.empty() ? options.input.record : options.input.bag));
+  std::signal(SIGINT, [](int) { g_interrupted = true; });
+  std::signal(SIGTERM, [](int) { g_interrupted = true; });
+  ProgressBar bar("replaying", reader->span());
+  constexpr atlas::Duration kAdvanceStep = 5 * atlas::kMillisecond;  // of event time; no influence on results
+  atlas::Stamp advanced = atlas::kBeginOfTime, first = 0, last = 0;
+  while (!g_interrupted) {
+    const auto event = reader->next();
+    if (!event) break;
+    if (first == 0) first = event->stamp;
+    last = event->stamp;
+    const atlas::StreamInfo& stream = reader->streams()[event->stream];
+    feed(graph, stream, *event);
+    ++summary.streams[stream.topic];
+    if (event->stream != 0 && (advanced == atlas::kBeginOfTime || event->stamp - 1 >= advanced + kAdvanceStep)) {
+      advanced = event->stamp - 1;
+      graph.advance(advanced);
+    }
+    bar.show(event->stamp);
+  }
+  graph.finish();
+  summary.complete = !g_interrupted;
+  if (g_interrupted) summary.failure = "interrupted";
+  for (const atlas::Stage* stage : graph.stages()) {
+    auto& counters = summary.stages[stage->name()];
+    counters = stage->counters().all();
+    for (std::size_t i = 0; i < stage->inputs(); ++i) {
+      counters["received " + stage->inputName(i)] = stage->merge().received(i);
+      counters["late " + stage->inputName(i)] = stage->merge().late(i);
+    }
+  }
+  summary.files = reader->report();
+  summary.notes = reader->notes();
+  summary.data_s = atlas::toSeconds(last - first);
+  summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  atlas::measureProcess(summary);
+  atlas::writeRunSummary(options.out, summary);
+  return summary;
+}
+
+}  // namespace atlas_loader
