@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// One square of the map: a mean for each voxel, in memory or in a file while nobody is near.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "atlas/lidar/voxel_index.hpp"
+#include "atlas/output/pcd.hpp"
+
+namespace atlas {
+
+class MapTile {
+ public:
+  /// key: the voxel of the point; x, y, z: map, m.
+  void add(const VoxelKey& key, double x, double y, double z, float intensity, double voxel_m);
+  /// All voxels in order of (z, y, x), whatever the order in which they were met.
+  [[nodiscard]] std::vector<MapPoint> points(double voxel_m) const;
+
+  [[nodiscard]] std::size_t voxels() const { return sums_.size(); }
+  [[nodiscard]] std::uint64_t returns() const { return returns_; }
+
+  /// The tile exactly as it is; throws std::runtime_error when the system refuses or the file is damaged.
+  void save(const std::filesystem::path& path) const;
+  static MapTile load(const std::filesystem::path& path);
+
+ private:
+  /// Sums of the offsets from the voxel's lower corner. After kMaxSamples a mean does not gain any more and a
+  /// float sum would begin to lose, so later returns are only counted.
+  struct Sum {
+    float x = 0, y = 0, z = 0, intensity = 0;
+    std::uint32_t count = 0;
+  };
+  static constexpr std::uint32_t kMaxSamples = 4096;
+
+  VoxelIndex index_;
+  std::vector<Sum> sums_;
+  std::uint64_t returns_ = 0;
+};
+
+}  // namespace atlas
