@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "atlas/lidar/obstacle_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "moving_lidar.hpp"
+
+namespace atlas {
+namespace {
+
+using test::at;
+
+/// Points in map seen by a lidar at the origin that stands still.
+struct Scene {
+  std::vector<LidarPoint> points;
+  double slope = 0.0;
+
+  void add(double x, double y, double above_ground) {
+    LidarPoint p;
+    p.x = static_cast<float>(x);
+    p.y = static_cast<float>(y);
+    p.z = static_cast<float>(slope * x + above_ground - 1.7);
+    points.push_back(p);
+  }
+  void road() {
+    for (double x = -30; x <= 30; x += 0.35) {
+      for (double y = -15; y <= 15; y += 0.35) {
+        if (std::hypot(x, y) > 3.0) add(x, y, y > 5.0 ? 0.12 : 0.0);  // a kerb at y = 5 m
+      }
+    }
+  }
+  /// Two visible sides of a car, rear left corner at (x, y).
+  void car(double x, double y) {
+    for (double z = 0.3; z <= 1.5; z += 0.16) {
+      for (double s = 0; s <= 4.2; s += 0.16) add(x + s, y, z);
+      for (double s = 0; s <= 1.8; s += 0.16) add(x, y + s, z);
+    }
+  }
+  [[nodiscard]] BatchedSweepPtr seen(double stamp_s) const {
+    auto sweep = std::make_shared<Sweep>();
+    sweep->stamp = at(stamp_s);
+    sweep->points = points;
+    auto batched = std::make_shared<BatchedSweep>();
+    batched->stamp = sweep->stamp;
+    batched->sweep = sweep;
+    batched->batches = {{0, static_cast<std::uint32_t>(points.size()), sweep->stamp, {}}};
+    return batched;
+  }
+};
+
+Odometry standing(double stamp_s) {
+  Odometry o;
+  o.stamp = at(stamp_s);
+  return o;
+}
+
+Obstacles found(const Scene& scene, Counters& counters) {
+  return findObstacles({scene.seen(1.0)}, Eigen::Vector3d::Zero(), at(1.0), {}, counters);
+}
+
+TEST(FindObstacles, TwoCarsNearEachOtherOnASlopeWithAKerb) {
+  for (const double slope : {0.0, 0.12}) {
+    Scene scene;
+    scene.slope = slope;
+    scene.road();
+    scene.car(8.0, 1.0);
+    scene.car(8.0 + 4.2 + 0.9, 1.0);
+    Counters counters;
+    const Obstacles result = found(scene, counters);
+    ASSERT_EQ(result.obstacles.size(), 2U)
+        << "slope " << slope;  // W20: neither slope nor kerb is an obstacle
+    EXPECT_NEAR(result.obstacles[0].center.x(), 10.1, 0.2);
+    EXPECT_NEAR(result.obstacles[0].size.x(), 4.2, 0.3);
+    EXPECT_NEAR(result.obstacles[0].size.y(), 1.8, 0.3);
+    EXPECT_NEAR(result.obstacles[1].center.x(), 15.2, 0.2);
+    EXPECT_GT(result.ground->points.size(), 5000U);
+  }
+}
+
+TEST(FindObstacles, LowThingsAreSeen) {
+  // W20: below 1 m above the road the published program saw nothing
+  Scene scene;
+  scene.road();
+  for (double z = 0.1; z <= 0.9; z += 0.16) {
+    for (double a = 0; a < 6.2; a += 0.4)
+      scene.add(10 + 0.3 * std::cos(a), -3 + 0.3 * std::sin(a), z);  // a child
+  }
+  Counters counters;
+  const Obstacles result = found(scene, counters);
+  ASSERT_EQ(result.obstacles.size(), 1U);
+  EXPECT_NEAR(result.obstacles[0].center.x(), 10.0, 0.2);
+  EXPECT_GT(result.obstacles[0].size.z(), 0.4);
+}
+
+TEST(FindObstacles, SmallClustersAreCountedHighPointsIgnored) {
+  Scene scene;
+  scene.road();
+  for (int i = 0; i < 5; ++i) scene.add(12.0 + 0.2 * i, 0.0, 1.0);
+  for (double x = 5; x < 9; x += 0.1) scene.add(x, 0.0, 4.6);  // a sign gantry
+  Counters counters;
+  EXPECT_TRUE(found(scene, counters).obstacles.empty());
+  EXPECT_EQ(counters.get("clusters below min_points"), 1U);
+}
+
+TEST(ObstacleStage, OneAnswerForEachSweepOfTheFirstLidarOnceItsPoseIsKnown) {
+  Scene scene;
+  scene.road();
+  scene.car(8, 1);
+  ObstacleStage stage({});
+  std::vector<Obstacles> answers;
+  stage.on_obstacles = [&](const Obstacles& o) { answers.push_back(o); };
+  stage.push(0, scene.seen(1.0));
+  stage.push(1, scene.seen(1.05));
+  stage.push(standing(0.98));
+  stage.advance(ObstacleStage::kFirstLidar, at(1.2));
+  stage.advance(ObstacleStage::kFirstLidar + 1, at(1.2));
+  EXPECT_TRUE(answers.empty()) << "the pose at 1.0 s is not known yet";
+  EXPECT_LT(stage.progress(), at(1.0));
+  stage.push(standing(1.02));
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].stamp, at(1.0));
+  EXPECT_EQ(answers[0].obstacles.size(), 1U);
+  auto no_pose = std::make_shared<BatchedSweep>(*scene.seen(1.3));
+  no_pose->batches.clear();
+  stage.push(0, no_pose);
+  stage.push(0, scene.seen(1.4));
+  for (std::size_t i = 0; i < stage.inputs(); ++i) stage.finish(i);
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_TRUE(answers[1].obstacles.empty());
+  EXPECT_TRUE(answers[2].obstacles.empty()) << "the odometry ended before";
+  EXPECT_EQ(stage.counters().get("skipped sweep: no pose yet"), 1U);
+  EXPECT_EQ(stage.counters().get("skipped sweep: after the newest pose"), 1U);
+}
+
+TEST(ObstacleStage, RefusesParametersByName) {
+  ObstacleParams params;
+  params.voxel_m = 0.0;
+  EXPECT_THROW(ObstacleStage{params}, std::invalid_argument);
+  params = {};
+  params.max_points = 3;
+  EXPECT_THROW(ObstacleStage{params}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace atlas

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// When is a graph complete? Every expected stage is there and every link is confirmed by the publishing side.
+#include <gtest/gtest.h>
+
+#include "run_source.hpp"
+
+namespace {
+
+atlas_msgs::StageHello hello(const std::string& stage, const std::string& process, std::vector<std::string> inputs,
+                             std::vector<std::string> outputs, std::vector<std::string> links = {}) {
+  atlas_msgs::StageHello msg;
+  msg.stage = stage;
+  msg.process = process;
+  msg.inputs = std::move(inputs);
+  msg.outputs = std::move(outputs);
+  msg.links = std::move(links);
+  return msg;
+}
+
+TEST(Graph, NamesTheStageThatIsMissing) {
+  EXPECT_EQ(atlas_loader::missingInGraph({"deskew"}, {}), "stage deskew has not said hello");
+}
+
+TEST(Graph, StagesOfOneProcessAreLinkedBySharingIt) {
+  EXPECT_EQ(atlas_loader::missingInGraph({"a", "b"}, {{"a", hello("a", "/manager", {}, {"/x"})},
+                                                      {"b", hello("b", "/manager", {"/x"}, {})}}),
+            "");
+}
+
+TEST(Graph, LinksBetweenProcessesNeedConfirmation) {
+  std::map<std::string, atlas_msgs::StageHello> hellos = {{"a", hello("a", "/a", {}, {"/x"})},
+                                                          {"b", hello("b", "/b", {"/x"}, {})}};
+  EXPECT_EQ(atlas_loader::missingInGraph({"a", "b"}, hellos), "b is not linked to /x of a");
+  hellos["a"].links = {"/x /b"};
+  EXPECT_EQ(atlas_loader::missingInGraph({"a", "b"}, hellos), "");
+}
+
+TEST(Graph, ATopicWithoutProducerIsNoObstacle) {
+  EXPECT_EQ(atlas_loader::missingInGraph({"b"}, {{"b", hello("b", "/b", {"/nobody"}, {})}}), "");
+}
+
+TEST(RunSourceParams, NamesFieldAndValue) {
+  atlas_loader::RunSourceParams params;
+  params.stages = {"a"};
+  params.lead_s = 0.1;
+  try {
+    validate(params);
+    FAIL() << "a lead of 0.1 s is too short";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("lead_s"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("0.1"), std::string::npos);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// Messages that arrive in any order leave in the order of their stamps; what is too late is counted; a loop begins anew.
+#include "ingest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace {
+
+using atlas_loader::Ingest;
+using Item = Ingest::Item;
+constexpr atlas::Stamp kBegin = 1'000'000'000'000;
+
+std::vector<atlas::StreamInfo> streams() {
+  return {{"tf_static", atlas::StreamKind::kStaticTransforms, 0},
+          {"imu/data", atlas::StreamKind::kImu, 0},
+          {"gnss/fix", atlas::StreamKind::kGnssFix, 0}};
+}
+atlas::Payload imu(atlas::Stamp stamp) {
+  atlas::ImuSample sample;
+  sample.stamp = stamp;
+  return sample;
+}
+
+std::vector<std::pair<std::size_t, atlas::Stamp>> drain(Ingest& ingest) {
+  std::vector<std::pair<std::size_t, atlas::Stamp>> order;
+  while (true) {
+    const auto item = ingest.pop();
+    if (!item || item->kind == Item::Kind::kEndOfRun) return order;
+    if (item->kind == Item::Kind::kEvent) order.emplace_back(item->event->stream, item->event->stamp);
+  }
+}
+
+TEST(Ingest, ArrivalOrderOfStreamsHasNoInfluence) {
+  std::vector<std::pair<std::size_t, atlas::Stamp>> expected;
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<std::deque<atlas::Stamp>> left(3);
+    for (int i = 0; i < 100; ++i) left[1].push_back(kBegin + i * 10'000'000);
+    for (int i = 0; i < 20; ++i) left[2].push_back(kBegin + i * 50'000'000);
+    Ingest ingest(streams(), 2 * atlas::kSecond);
+    while (!left[1].empty() || !left[2].empty()) {
+      std::size_t stream = 1 + random() % 2;
+      if (left[stream].empty()) stream = 3 - stream;
+      ingest.push(stream, left[stream].front(), imu(left[stream].front()));
+      left[stream].pop_front();
+    }
+    ingest.finish();
+    const auto order = drain(ingest);
+    EXPECT_EQ(ingest.late(), 0U);
+    if (seed == 0) {
+      expected = order;
+      EXPECT_EQ(order.size(), 120U);
+      EXPECT_TRUE(std::is_sorted(order.begin(), order.end(), [](const auto& a, const auto& b) {
+        return std::make_pair(a.second, a.first) < std::make_pair(b.second, b.first);
+      }));
+    } else {
+      EXPECT_EQ(order, expected) << "seed " << seed;
+    }
+  }
+}
+
+TEST(Ingest, StaticTransformsComeFirst) {
+  Ingest ingest(streams(), atlas::kSecond);
+  ingest.push(1, kBegin, imu(kBegin));
+  ingest.push(0, kBegin + 5, atlas::StaticTransforms{});
+  ingest.finish();
+  const auto order = drain(ingest);
+  ASSERT_EQ(order.size(), 2U);
+  EXPECT_EQ(order[0].first, 0U);
+}
+
+TEST(Ingest, ASilentStreamDelaysButDoesNotBlock) {
+  Ingest ingest(streams(), atlas::kSecond);
+  for (int i = 0; i <= 200; ++i) ingest.push(1, kBegin + i * 10'000'000, imu(0));
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(ingest.pop()->event->stamp, kBegin + i * 10'000'000);
+}
+
+TEST(Ingest, TooLateIsCountedNotDelivered) {
+  Ingest ingest(streams(), atlas::kSecond);
+  for (int i = 0; i <= 300; ++i) ingest.push(1, kBegin + i * 10'000'000, imu(0));
+  ingest.push(2, kBegin, imu(0));  // 3 s behind the newest
+  ingest.finish();
+  const auto order = drain(ingest);
+  EXPECT_EQ(order.size(), 301U);
+  EXPECT_EQ(ingest.late(), 1U);
+}
+
+TEST(Ingest, TimeThatJumpsBackEndsTheEpoch) {
+  Ingest ingest(streams(), atlas::kSecond);
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0; i <= 300; ++i) ingest.push(1, kBegin + i * 10'000'000, imu(0));
+  }
+  ingest.finish();
+  std::size_t events = 0, epochs = 0;
+  while (true) {
+    const auto item = ingest.pop();
+    if (item->kind == Item::Kind::kEndOfRun) break;
+    if (item->kind == Item::Kind::kEndOfEpoch) ++epochs;
+    if (item->kind == Item::Kind::kEvent) ++events;
+  }
+  EXPECT_EQ(events, 602U);
+  EXPECT_EQ(epochs, 1U);
+  EXPECT_EQ(ingest.late(), 0U);
+}
+
+TEST(Ingest, StopWakesTheReader) {
+  Ingest ingest(streams(), atlas::kSecond);
+  ingest.stop();
+  EXPECT_FALSE(ingest.pop().has_value());
+}
+
+TEST(TopicNames, KindsByEnding) {
+  EXPECT_EQ(atlas_loader::kindOfTopicName("lidar_left/points"), atlas::StreamKind::kPoints);
+  EXPECT_EQ(atlas_loader::kindOfTopicName("gnss/heading"), atlas::StreamKind::kGnssHeading);
+  EXPECT_EQ(atlas_loader::kindOfTopicName("imu/gnss/fix"), atlas::StreamKind::kGnssFix);
+  EXPECT_EQ(atlas_loader::kindOfTopicName("camera_ir/image_raw/compressed"), atlas::StreamKind::kCompressedImage);
+  EXPECT_EQ(atlas_loader::kindOfTopicName("something/else"), std::nullopt);
+}
+
+}  // namespace
