@@ -9,8 +9,8 @@
 //   frustums, camera_ir/camera_info  -> thermal      -> camera_ir/projected_detections
 //   batches, <camera>/camera_info    -> depth        -> <camera>/depth/image
 //
-// Each bindXxx names a stage's inputs and outputs once. The nodelets bind the same functions to topics (atlas_ros::StageLink), the
-// offline replay binds them to a LocalGraph: the two cannot drift apart.
+// Each bindXxx names a stage's inputs and outputs once. The nodelets bind the same functions to topics
+// (atlas_ros::StageLink), the offline replay binds them to a LocalGraph: the two cannot drift apart.
 #pragma once
 
 #include <functional>
@@ -47,7 +47,8 @@ void addPipeline(LocalGraph& graph, const PipelineParams& params);
 
 /// One output per name: `<name><suffix>`; the returned function emits on output i.
 template <class T, class Bus>
-std::function<void(std::size_t, const T&)> outputs(Bus& bus, const std::vector<std::string>& names, const std::string& suffix) {
+std::function<void(std::size_t, const T&)> outputs(Bus& bus, const std::vector<std::string>& names,
+                                                   const std::string& suffix) {
   std::vector<std::function<void(const T&)>> emits;
   for (const std::string& name : names) emits.push_back(bus.template output<T>(name + suffix));
   return [emits](std::size_t i, const T& value) { emits.at(i)(value); };
@@ -56,7 +57,8 @@ std::function<void(std::size_t, const T&)> outputs(Bus& bus, const std::vector<s
 template <class StageType, class T, class Bus>
 void inputs(Bus& bus, std::size_t first, const std::vector<std::string>& names, const std::string& suffix) {
   for (std::size_t i = 0; i < names.size(); ++i) {
-    bus.template input<StageType, T>(first + i, names[i] + suffix, [i](StageType& s, const T& value) { s.push(i, value); });
+    bus.template input<StageType, T>(first + i, names[i] + suffix,
+                                     [i](StageType& s, const T& value) { s.push(i, value); });
   }
 }
 template <class StageType, class Bus>
@@ -73,7 +75,8 @@ StageFactory bindLocalization(Bus& bus, const LocalizationParams& params) {
   bus.template input<S, StaticTransforms>(S::kTfStatic, "tf_static",
                                           [](S& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
   bus.template input<S, GnssFix>(S::kGnssFix, "gnss/fix", [](S& s, const GnssFix& fix) { s.push(fix); });
-  bus.template input<S, GnssHeading>(S::kGnssHeading, "gnss/heading", [](S& s, const GnssHeading& h) { s.push(h); });
+  bus.template input<S, GnssHeading>(S::kGnssHeading, "gnss/heading",
+                                     [](S& s, const GnssHeading& h) { s.push(h); });
   bus.template input<S, ImuSample>(S::kImu, "imu/data", [](S& s, const ImuSample& imu) { s.push(imu); });
   const auto odometry = bus.template output<Odometry>("odometry");
   const auto anchor = bus.template output<Anchor>("anchor");
@@ -151,7 +154,8 @@ StageFactory bindThermal(Bus& bus, const ThermalParams& params) {
   bus.template input<S, CameraInfo>(S::kThermalInfo, params.thermal_camera + "/camera_info",
                                     [](S& s, const CameraInfo& info) { s.pushThermal(info); });
   inputs<S, Frustums>(bus, S::kFirstCamera, params.cameras, "/frustums");
-  const auto projected = bus.template output<ProjectedDetections>(params.thermal_camera + "/projected_detections");
+  const auto projected =
+      bus.template output<ProjectedDetections>(params.thermal_camera + "/projected_detections");
   return [=] {
     auto stage = std::make_unique<S>(params);
     stage->on_projected = projected;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a stage read, answered and skipped, with reasons. Ends in diagnostics and in run.json: nothing is lost silently.
+// What a stage read, answered and skipped, with reasons. Ends in diagnostics and in run.json: nothing is lost
+// silently.
 #pragma once
 
 #include <cstdint>

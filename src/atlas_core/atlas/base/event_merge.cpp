@@ -19,7 +19,8 @@ EventMerge::EventMerge(std::vector<std::string> stream_names) {
 void EventMerge::push(std::size_t stream, Stamp stamp, Action action) {
   Stream& s = streams_.at(stream);
   ++s.received;
-  const bool behind_dispatched = stamp < dispatched_stamp_ || (stamp == dispatched_stamp_ && stream < dispatched_stream_);
+  const bool behind_dispatched =
+      stamp < dispatched_stamp_ || (stamp == dispatched_stamp_ && stream < dispatched_stream_);
   // The end of a stream is the watermark kEndOfTime, so events after it are late, too.
   if (stamp <= s.watermark || behind_dispatched || stamp < s.last_pushed) {
     ++s.late;
@@ -41,7 +42,8 @@ std::size_t EventMerge::earliestHead() const {
   std::size_t earliest = streams_.size();
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     if (streams_[i].queue.empty()) continue;
-    if (earliest == streams_.size() || streams_[i].queue.front().stamp < streams_[earliest].queue.front().stamp) {
+    if (earliest == streams_.size() ||
+        streams_[i].queue.front().stamp < streams_[earliest].queue.front().stamp) {
       earliest = i;  // on equal stamps the smaller index stays
     }
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Merges the inputs of a stage by event time, so that arrival order has no influence on any result.
-// Order is total: (stamp, stream index, order within the stream). An event is dispatched once every other stream has
-// shown, by its own next event, by a watermark or by its end, that it cannot deliver an earlier one
-// (the idea of cartographer's OrderedMultiQueue; watermarks as in Akidau et al. 2015, "The Dataflow Model").
+// Order is total: (stamp, stream index, order within the stream). An event is dispatched once every other
+// stream has shown, by its own next event, by a watermark or by its end, that it cannot deliver an earlier
+// one (the idea of cartographer's OrderedMultiQueue; watermarks as in Akidau et al. 2015, "The Dataflow
+// Model").
 #pragma once
 
 #include <cstddef>
@@ -22,8 +23,9 @@ class EventMerge {
 
   explicit EventMerge(std::vector<std::string> stream_names);
 
-  /// Queues an event and dispatches all that are due (its action may run now or in a later call). An event at or
-  /// before its own stream's watermark, or before what was already dispatched, is late: counted, never dispatched.
+  /// Queues an event and dispatches all that are due (its action may run now or in a later call). An event at
+  /// or before its own stream's watermark, or before what was already dispatched, is late: counted, never
+  /// dispatched.
   void push(std::size_t stream, Stamp stamp, Action action);
   /// Promise: no further event of `stream` has a stamp at or before `watermark`. A smaller one is ignored.
   void advance(std::size_t stream, Stamp watermark);

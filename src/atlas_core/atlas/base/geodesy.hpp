@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// WGS84 <-> local east-north-up (ENU) frame `map`, through GeographicLib (Karney 2011): ellipsoid, not a sphere.
+// WGS84 <-> local east-north-up (ENU) frame `map`, through GeographicLib (Karney 2011): ellipsoid, not a
+// sphere.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +26,8 @@ class LocalEnu {
   Geodetic anchor_;
 };
 
-/// Normal gravity on the WGS84 ellipsoid at a latitude, reduced to a height (Somigliana; NIMA TR8350.2 eq. 4-1, 4-3), m/s^2.
+/// Normal gravity on the WGS84 ellipsoid at a latitude, reduced to a height (Somigliana; NIMA TR8350.2 eq.
+/// 4-1, 4-3), m/s^2.
 double normalGravity(double latitude_deg, double altitude_m);
 
 }  // namespace atlas

@@ -16,7 +16,8 @@ Pose interpolate(const Pose& a, const Pose& b, double ratio) {
 
 RollPitchYaw toRollPitchYaw(const Eigen::Quaterniond& q) {
   const Eigen::Matrix3d r = q.toRotationMatrix();
-  const double sin_pitch = std::min(1.0, std::max(-1.0, -r(2, 0)));  // rounding only: |r(2,0)| <= 1 for a unit q
+  const double sin_pitch =
+      std::min(1.0, std::max(-1.0, -r(2, 0)));  // rounding only: |r(2,0)| <= 1 for a unit q
   return {std::atan2(r(2, 1), r(2, 2)), std::asin(sin_pitch), std::atan2(r(1, 0), r(0, 0))};
 }
 

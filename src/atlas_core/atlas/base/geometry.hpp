@@ -30,8 +30,8 @@ struct Pose {
   }
 };
 
-/// Pose at `ratio` between a (0) and b (1): slerp of rotation, linear translation. Ratio outside [0, 1] throws
-/// std::invalid_argument: there is no silent extrapolation.
+/// Pose at `ratio` between a (0) and b (1): slerp of rotation, linear translation. Ratio outside [0, 1]
+/// throws std::invalid_argument: there is no silent extrapolation.
 Pose interpolate(const Pose& a, const Pose& b, double ratio);
 
 /// Fixed-axis roll (x), pitch (y), yaw (z), rad: R = Rz(yaw) Ry(pitch) Rx(roll), REP-103.
@@ -44,7 +44,8 @@ Eigen::Quaterniond fromRollPitchYaw(const RollPitchYaw& rpy);
 /// The same angle in (-pi, pi].
 double wrapAngle(double angle_rad);
 
-/// Rotation vector (axis * angle, rad) to quaternion and back (Sola 2017, "Quaternion kinematics", eq. 101 and 105).
+/// Rotation vector (axis * angle, rad) to quaternion and back (Sola 2017, "Quaternion kinematics", eq. 101
+/// and 105).
 Eigen::Quaterniond expSo3(const Eigen::Vector3d& rotation_vector_rad);
 Eigen::Vector3d logSo3(const Eigen::Quaterniond& q);
 

@@ -39,7 +39,8 @@ void LocalGraph::advance(Stamp watermark) {
   for (const auto& [topic, channel] : channels_) {
     if (channel->producer == nullptr) advanceConsumers(*channel, watermark);
   }
-  for (const auto& node : nodes_) {  // in order of the data path: a stage's progress is final before it is passed on
+  for (const auto& node :
+       nodes_) {  // in order of the data path: a stage's progress is final before it is passed on
     for (const auto& [topic, channel] : channels_) {
       if (channel->producer == node.get()) advanceConsumers(*channel, node->stage->progress());
     }

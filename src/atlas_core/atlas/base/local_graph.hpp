@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Stages connected inside one process: what topics do between nodelets, without topics. Single-threaded.
 //
-// A stage is bound to a graph by a function template bindXxx(bus, params) that declares its inputs and outputs once, for this
-// graph and for ROS alike (atlas_ros::StageLink is the other kind of bus). A bus offers
-//   bus.template input<StageType, T>(index, topic, push)   push(StageType&, const T&) hands a value to the stage
-//   bus.template output<T>(topic)                          gives the std::function<void(const T&)> that emits
+// A stage is bound to a graph by a function template bindXxx(bus, params) that declares its inputs and
+// outputs once, for this graph and for ROS alike (atlas_ros::StageLink is the other kind of bus). A bus
+// offers
+//   bus.template input<StageType, T>(index, topic, push)   push(StageType&, const T&) hands a value to the
+//   stage bus.template output<T>(topic)                          gives the std::function<void(const T&)> that
+//   emits
 // and bindXxx returns the factory of the stage: std::function<std::unique_ptr<Stage>()>.
 #pragma once
 
@@ -85,7 +87,8 @@ class LocalGraph::Bus {
   template <class T>
   std::function<void(const T&)> output(const std::string& topic) {
     Channel& channel = graph_.channel(topic, typeid(T).name());
-    ATLAS_CHECK(channel.producer == nullptr && channel.consumers.empty(), "topic " + topic + " is already in use");
+    ATLAS_CHECK(channel.producer == nullptr && channel.consumers.empty(),
+                "topic " + topic + " is already in use");
     channel.producer = &node_;
     return [&channel](const T& value) { emit(channel, &value); };
   }

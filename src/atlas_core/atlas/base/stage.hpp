@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What every stage of the suite has in common: inputs merged by event time, a progress, counters.
-// The same stage objects run inside the nodelets (fed from topics) and inside the offline pipeline (fed directly), so
-// both give the same bits. A stage is single-threaded, never blocks and never looks at a clock.
+// The same stage objects run inside the nodelets (fed from topics) and inside the offline pipeline (fed
+// directly), so both give the same bits. A stage is single-threaded, never blocks and never looks at a clock.
 #pragma once
 
 #include <functional>
@@ -53,9 +53,11 @@ class Stage {
     merge_.push(input, stamp, std::move(action));
     afterInput();
   }
-  /// Smallest stamp of an output that the stage still owes for inputs it has already taken; kEndOfTime when none.
+  /// Smallest stamp of an output that the stage still owes for inputs it has already taken; kEndOfTime when
+  /// none.
   [[nodiscard]] virtual Stamp heldBackFrom() const { return kEndOfTime; }
-  /// Called after events were dispatched or watermarks moved; merge().watermark() tells how far the inputs are known.
+  /// Called after events were dispatched or watermarks moved; merge().watermark() tells how far the inputs
+  /// are known.
   virtual void onProgress() {}
   /// Called once when all inputs have ended: answer whatever is still held back.
   virtual void onEnd() {}

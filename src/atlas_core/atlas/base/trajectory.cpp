@@ -28,7 +28,8 @@ Outcome<Pose> Trajectory::at(Stamp stamp) const {
   const StampedPose& before = *(after - 1);
   const Duration span = after->stamp - before.stamp;
   if (span > max_gap_) return Reason::kPoseGap;
-  return interpolate(before.pose, after->pose, static_cast<double>(stamp - before.stamp) / static_cast<double>(span));
+  return interpolate(before.pose, after->pose,
+                     static_cast<double>(stamp - before.stamp) / static_cast<double>(span));
 }
 
 }  // namespace atlas

@@ -26,8 +26,8 @@ class Trajectory {
   void forgetBefore(Stamp stamp);
   void clear() { poses_.clear(); }
 
-  /// T_map_imu at `stamp`: slerp and linear between the two neighbours, exact at a stored stamp. No extrapolation:
-  /// kNoPoseYet, kPoseNotReached or kPoseGap otherwise.
+  /// T_map_imu at `stamp`: slerp and linear between the two neighbours, exact at a stored stamp. No
+  /// extrapolation: kNoPoseYet, kPoseNotReached or kPoseGap otherwise.
   [[nodiscard]] Outcome<Pose> at(Stamp stamp) const;
 
   [[nodiscard]] bool empty() const { return poses_.empty(); }

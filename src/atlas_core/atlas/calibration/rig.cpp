@@ -4,7 +4,9 @@
 namespace atlas {
 namespace {
 bool isBase(const std::string& frame) { return frame == "base_link" || frame == "imu"; }
-std::string withoutSlash(const std::string& frame) { return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame; }
+std::string withoutSlash(const std::string& frame) {
+  return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame;
+}
 }  // namespace
 
 void Rig::add(const StaticTransforms& transforms) {

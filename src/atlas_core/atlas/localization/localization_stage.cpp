@@ -99,7 +99,8 @@ void LocalizationStage::use(const GnssHeading& heading) {
     counters_.add("skipped heading: before the first usable fix");
     return;
   }
-  // A yaw that has travelled as a quaternion differs in its last bits from one that has not: both round to the same.
+  // A yaw that has travelled as a quaternion differs in its last bits from one that has not: both round to
+  // the same.
   constexpr double kYawGrid_rad = 1e-9;
   filter_->updateHeading(heading.stamp, std::round(heading.yaw_rad / kYawGrid_rad) * kYawGrid_rad, variance);
 }

@@ -17,7 +17,8 @@ namespace atlas {
 
 struct LocalizationParams {
   std::string filter = "kalman_1d";  ///< see makePositioningFilter()
-  /// Its T_imu_antenna translation is the lever arm; "" = the frame that the fix itself names (none: at the imu).
+  /// Its T_imu_antenna translation is the lever arm; "" = the frame that the fix itself names (none: at the
+  /// imu).
   std::string gnss_antenna_frame = "gnss_rear";
   PositioningParams positioning;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The one interface of everything that can be replayed: BUD record, KITTI raw drive, bag. Events come in stamp order and
-// one by one, so memory does not depend on the length of the record.
+// The one interface of everything that can be replayed: BUD record, KITTI raw drive, bag. Events come in
+// stamp order and one by one, so memory does not depend on the length of the record.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,22 @@ namespace atlas {
 
 /// What a topic carries; decides the ROS message type.
 enum class StreamKind {
-  kStaticTransforms, kImu, kMagnetic, kPressure, kTemperature, kTimeReference, kGnssFix, kGnssHeading, kPoints,
-  kCameraInfo, kVideoPackets, kCompressedImage, kImage, kDetections, kTemperatureRange, kRadar
+  kStaticTransforms,
+  kImu,
+  kMagnetic,
+  kPressure,
+  kTemperature,
+  kTimeReference,
+  kGnssFix,
+  kGnssHeading,
+  kPoints,
+  kCameraInfo,
+  kVideoPackets,
+  kCompressedImage,
+  kImage,
+  kDetections,
+  kTemperatureRange,
+  kRadar
 };
 
 struct StreamInfo {
@@ -35,7 +49,8 @@ struct Event {
 struct FileReport {
   std::uint64_t rows = 0, used = 0;
   std::map<std::string, std::uint64_t> skipped;  ///< reason -> rows
-  std::vector<std::string> examples;  ///< first few skipped rows: "imu/imu.txt:17: field 3 (ay): not a number: 'abc'"
+  std::vector<std::string>
+      examples;  ///< first few skipped rows: "imu/imu.txt:17: field 3 (ay): not a number: 'abc'"
 };
 
 class RecordReader {
@@ -43,11 +58,13 @@ class RecordReader {
   virtual ~RecordReader() = default;
   /// Streams in their fixed order; the index breaks ties of equal stamps. Stream 0 is tf_static.
   [[nodiscard]] virtual const std::vector<StreamInfo>& streams() const = 0;
-  /// The next event in (stamp, stream) order; nullopt at the end. tf_static comes first, with the first event's stamp.
+  /// The next event in (stamp, stream) order; nullopt at the end. tf_static comes first, with the first
+  /// event's stamp.
   virtual std::optional<Event> next() = 0;
   /// Per file; complete after next() has returned nullopt.
   [[nodiscard]] virtual std::map<std::string, FileReport> report() const = 0;
-  /// Notes for the user: "acceleration sign inverted, corrected", "video has 12 frames, timestamps 14 rows", ...
+  /// Notes for the user: "acceleration sign inverted, corrected", "video has 12 frames, timestamps 14 rows",
+  /// ...
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
   /// First and last stamp of the record if known, else both 0.
   [[nodiscard]] virtual std::pair<Stamp, Stamp> span() const = 0;

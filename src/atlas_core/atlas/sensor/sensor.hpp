@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Plain structs of what the sensors deliver: SI units, radians, stamps of the data. Frames are named at each field.
-// Heavy data (points, pixels, packets) is shared by pointer to const and never changed after it was made.
+// Plain structs of what the sensors deliver: SI units, radians, stamps of the data. Frames are named at each
+// field. Heavy data (points, pixels, packets) is shared by pointer to const and never changed after it was
+// made.
 #pragma once
 
 #include <array>
@@ -18,7 +19,8 @@
 
 namespace atlas {
 
-/// Inertial sample in the imu frame (x forward, y left, z up). At rest linear_acceleration points up (REP-145).
+/// Inertial sample in the imu frame (x forward, y left, z up). At rest linear_acceleration points up
+/// (REP-145).
 struct ImuSample {
   Stamp stamp = 0;
   Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
@@ -29,7 +31,8 @@ struct ImuSample {
 
 struct MagneticSample {
   Stamp stamp = 0;
-  Eigen::Vector3d field = Eigen::Vector3d::Zero();  ///< imu frame; tesla, or the sensor's normalized unit (BUD)
+  Eigen::Vector3d field =
+      Eigen::Vector3d::Zero();  ///< imu frame; tesla, or the sensor's normalized unit (BUD)
 };
 
 /// One number over time: pressure in Pa, temperature in deg C.
@@ -61,7 +64,8 @@ struct GnssHeading {
   std::optional<double> variance_rad2;  ///< absent when the receiver gives none
 };
 
-/// One return. time: s relative to the sweep's stamp. 24 bytes, laid out as in the PointCloud2 that carries it.
+/// One return. time: s relative to the sweep's stamp. 24 bytes, laid out as in the PointCloud2 that carries
+/// it.
 struct LidarPoint {
   float x = 0, y = 0, z = 0;  ///< m, lidar frame; NaN where there was no return
   float intensity = 0;        ///< as recorded
@@ -79,15 +83,16 @@ struct Sweep {
 };
 using SweepPtr = std::shared_ptr<const Sweep>;
 
-/// One compressed picture of a video in decoding order. Its own presentation time comes from pts_index: the stamp of the
-/// picture with index i is the `stamp` of the packet whose decode_index is i (packets carry the stamps in order).
+/// One compressed picture of a video in decoding order. Its own presentation time comes from pts_index: the
+/// stamp of the picture with index i is the `stamp` of the packet whose decode_index is i (packets carry the
+/// stamps in order).
 struct VideoPacket {
   Stamp stamp = 0;
   std::string frame;
-  std::string codec;              ///< "hevc", "h264"
+  std::string codec;  ///< "hevc", "h264"
   bool keyframe = false;
-  std::uint32_t decode_index = 0; ///< counts packets in the record
-  std::uint32_t pts_index = 0;    ///< index of this picture in presentation order
+  std::uint32_t decode_index = 0;       ///< counts packets in the record
+  std::uint32_t pts_index = 0;          ///< index of this picture in presentation order
   std::vector<std::uint8_t> extradata;  ///< codec parameters, on keyframes only
   std::vector<std::uint8_t> data;
 };
@@ -96,8 +101,8 @@ using VideoPacketPtr = std::shared_ptr<const VideoPacket>;
 /// An image as stored (JPEG, PNG bytes) or decoded (pixels). Exactly one of `encoded` and `pixels` is filled.
 struct Image {
   Stamp stamp = 0;
-  std::string frame;                  ///< optical frame: x right, y down, z forward (REP-103)
-  std::string format;                 ///< "jpeg", "png" for encoded; "bgr8", "mono8", "mono16", "32FC1" for pixels
+  std::string frame;   ///< optical frame: x right, y down, z forward (REP-103)
+  std::string format;  ///< "jpeg", "png" for encoded; "bgr8", "mono8", "mono16", "32FC1" for pixels
   std::vector<std::uint8_t> encoded;
   cv::Mat pixels;
 };
@@ -110,13 +115,13 @@ struct EncodedImage {
 /// Intrinsics as in sensor_msgs/CameraInfo, one per image, with the image's stamp.
 struct CameraInfo {
   Stamp stamp = 0;
-  std::string frame;  ///< optical frame
+  std::string frame;                    ///< optical frame
   std::uint32_t width = 0, height = 0;  ///< px
   std::string distortion_model;         ///< "plumb_bob", "rational_polynomial", "equidistant"
   std::vector<double> distortion;       ///< k1, k2, p1, p2, k3, ...
   std::array<double, 9> K{};            ///< row-major, px
   std::array<double, 9> R{1, 0, 0, 0, 1, 0, 0, 0, 1};
-  std::array<double, 12> P{};           ///< row-major, px
+  std::array<double, 12> P{};  ///< row-major, px
 };
 
 /// One box of an image detector, pixels of the unrectified image, not clipped.
@@ -128,9 +133,9 @@ struct Detection2d {
 
 /// All detections of one image. Present (empty) for images without any, when the detector ran on them.
 struct Detections {
-  Stamp stamp = 0;                  ///< of the image
-  std::string frame;                ///< optical frame of the camera
-  std::uint32_t image_index = 0;    ///< 0-based index of the image in its stream
+  Stamp stamp = 0;                ///< of the image
+  std::string frame;              ///< optical frame of the camera
+  std::uint32_t image_index = 0;  ///< 0-based index of the image in its stream
   std::vector<Detection2d> boxes;
 };
 
@@ -159,7 +164,8 @@ struct StaticTransforms {
   std::vector<StaticTransform> transforms;
 };
 
-using Payload = std::variant<StaticTransforms, ImuSample, MagneticSample, ScalarSample, TimeReference, GnssFix, GnssHeading,
-                             SweepPtr, CameraInfo, VideoPacketPtr, ImagePtr, Detections, TemperatureRange, RadarScan>;
+using Payload = std::variant<StaticTransforms, ImuSample, MagneticSample, ScalarSample, TimeReference,
+                             GnssFix, GnssHeading, SweepPtr, CameraInfo, VideoPacketPtr, ImagePtr, Detections,
+                             TemperatureRange, RadarScan>;
 
 }  // namespace atlas
