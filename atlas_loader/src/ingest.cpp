@@ -17,7 +17,7 @@ void Ingest::startEpoch() {
   for (const atlas::StreamInfo& stream : streams_) names.push_back(stream.topic);
   merge_ = std::make_unique<atlas::EventMerge>(std::move(names));
   newest_of_.assign(streams_.size(), atlas::kBeginOfTime);
-  newest_ = atlas::kBeginOfTime;
+  newest_ = oldest_ = atlas::kBeginOfTime;
 }
 
 void Ingest::endEpoch() {
@@ -40,9 +40,19 @@ void Ingest::push(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload
   });
   if (is_static) return;
   newest_of_[stream] = std::max(newest_of_[stream], stamp);
+  oldest_ = oldest_ == atlas::kBeginOfTime ? stamp : std::min(oldest_, stamp);
   if (stamp <= newest_) return;
   newest_ = stamp;
-  for (std::size_t i = 0; i < streams_.size(); ++i) merge_->advance(i, newest_ - max_delay_);
+  advanceSilent();
+}
+
+/// Static transforms may arrive after the first measurements (another connection), so they get max_delay from the oldest one.
+void Ingest::advanceSilent() {
+  const bool static_known = newest_ - oldest_ >= max_delay_;
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    const bool is_static = streams_[i].kind == atlas::StreamKind::kStaticTransforms;
+    if (!is_static || static_known) merge_->advance(i, newest_ - max_delay_);
+  }
 }
 
 void Ingest::finish() {

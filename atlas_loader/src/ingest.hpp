@@ -40,13 +40,14 @@ class Ingest {
  private:
   void startEpoch();
   void endEpoch();
+  void advanceSilent();
   void put(Item item);
 
   std::vector<atlas::StreamInfo> streams_;
   atlas::Duration max_delay_;
   std::unique_ptr<atlas::EventMerge> merge_;
   std::vector<atlas::Stamp> newest_of_;  ///< per stream
-  atlas::Stamp newest_ = atlas::kBeginOfTime;
+  atlas::Stamp newest_ = atlas::kBeginOfTime, oldest_ = atlas::kBeginOfTime;  ///< of this epoch
   std::uint64_t late_before_ = 0, received_ = 0;
 
   mutable std::mutex mutex_;  ///< guards what follows

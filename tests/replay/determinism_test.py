@@ -31,6 +31,8 @@ def find_program(name):
 
 def environment(port, ros_home):
     result = dict(os.environ)
+    # without it rosconsole keeps its lines until the process ends when stdout is a file
+    result.update(ROSCONSOLE_STDOUT_LINE_BUFFERED="1")
     result.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1", ROS_HOME=str(ros_home), ROS_LOG_DIR=str(ros_home / "log"))
     return result
 

@@ -6,11 +6,12 @@
 
 namespace {
 
+constexpr atlas::Duration kStep = 10 * atlas::kMillisecond;
 constexpr atlas::Stamp kBegin = 1'000'000'000'000;
 
 TEST(BagCheck, CleanTopicHasNoProblem) {
   atlas_loader::TopicStatistics statistics;
-  for (int i = 0; i < 1000; ++i) statistics.add(kBegin + i * 10'000'000, kBegin + i * 10'000'000 + 2'000'000);
+  for (int i = 0; i < 1000; ++i) statistics.add(kBegin + i * kStep, kBegin + i * kStep + 2 * atlas::kMillisecond);
   const auto check = statistics.result("sensor_msgs/Imu");
   EXPECT_EQ(check.messages, 1000U);
   EXPECT_NEAR(check.rate_hz, 100.0, 1e-9);

@@ -12,6 +12,7 @@ namespace {
 using atlas_loader::Ingest;
 using Item = Ingest::Item;
 constexpr atlas::Stamp kBegin = 1'000'000'000'000;
+constexpr atlas::Duration kStep = 10 * atlas::kMillisecond;
 
 std::vector<atlas::StreamInfo> streams() {
   return {{"tf_static", atlas::StreamKind::kStaticTransforms, 0},
@@ -38,8 +39,8 @@ TEST(Ingest, ArrivalOrderOfStreamsHasNoInfluence) {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
     std::vector<std::deque<atlas::Stamp>> left(3);
-    for (int i = 0; i < 100; ++i) left[1].push_back(kBegin + i * 10'000'000);
-    for (int i = 0; i < 20; ++i) left[2].push_back(kBegin + i * 50'000'000);
+    for (int i = 0; i < 100; ++i) left[1].push_back(kBegin + i * kStep);
+    for (int i = 0; i < 20; ++i) left[2].push_back(kBegin + 5 * i * kStep);
     Ingest ingest(streams(), 2 * atlas::kSecond);
     while (!left[1].empty() || !left[2].empty()) {
       std::size_t stream = 1 + random() % 2;
@@ -74,13 +75,13 @@ TEST(Ingest, StaticTransformsComeFirst) {
 
 TEST(Ingest, ASilentStreamDelaysButDoesNotBlock) {
   Ingest ingest(streams(), atlas::kSecond);
-  for (int i = 0; i <= 200; ++i) ingest.push(1, kBegin + i * 10'000'000, imu(0));
-  for (int i = 0; i < 100; ++i) ASSERT_EQ(ingest.pop()->event->stamp, kBegin + i * 10'000'000);
+  for (int i = 0; i <= 200; ++i) ingest.push(1, kBegin + i * kStep, imu(0));
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(ingest.pop()->event->stamp, kBegin + i * kStep);
 }
 
 TEST(Ingest, TooLateIsCountedNotDelivered) {
   Ingest ingest(streams(), atlas::kSecond);
-  for (int i = 0; i <= 300; ++i) ingest.push(1, kBegin + i * 10'000'000, imu(0));
+  for (int i = 0; i <= 300; ++i) ingest.push(1, kBegin + i * kStep, imu(0));
   ingest.push(2, kBegin, imu(0));  // 3 s behind the newest
   ingest.finish();
   const auto order = drain(ingest);
@@ -91,7 +92,7 @@ TEST(Ingest, TooLateIsCountedNotDelivered) {
 TEST(Ingest, TimeThatJumpsBackEndsTheEpoch) {
   Ingest ingest(streams(), atlas::kSecond);
   for (int round = 0; round < 2; ++round) {
-    for (int i = 0; i <= 300; ++i) ingest.push(1, kBegin + i * 10'000'000, imu(0));
+    for (int i = 0; i <= 300; ++i) ingest.push(1, kBegin + i * kStep, imu(0));
   }
   ingest.finish();
   std::size_t events = 0, epochs = 0;
