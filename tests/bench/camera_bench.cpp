@@ -49,7 +49,7 @@ BatchedSweep makeSweep(std::size_t count) {
 
 void depthImage(benchmark::State& state) {
   const std::size_t sweeps = static_cast<std::size_t>(state.range(0));
-  const BatchedSweep sweep = makeSweep(70000);
+  const BoundedSweepPtr sweep = withBounds(std::make_shared<BatchedSweep>(makeSweep(70000)));
   IntrinsicsCache cache(0.5, 100.0);
   const Intrinsics& intrinsics = cache.of(thermalInfo()).value();
   Pose T_camera_map;  // optical frame of a camera that looks along x
@@ -59,7 +59,7 @@ void depthImage(benchmark::State& state) {
     DepthBuffer buffer(640, 512);
     seen = 0;
     for (std::size_t i = 0; i < sweeps; ++i) {
-      intrinsics.projector.projectSweep(sweep, T_camera_map, [&](const ProjectedPoint& point) {
+      intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
         buffer.add(point);
         ++seen;
       });

@@ -69,7 +69,8 @@ TEST(Projector, usesThePoseOfEachPointsBatch) {
   sweep->batch_of_point = {1, 0, 1};
   const Projector projector(CameraModel::fromInfo(simpleInfo()).value(), 0.5, 50.0);
   std::vector<float> depths;
-  projector.projectSweep(*sweep, Pose(), [&](const ProjectedPoint& seen) { depths.push_back(seen.depth_m); });
+  projector.projectSweep(*withBounds(sweep), Pose(),
+                         [&](const ProjectedPoint& seen) { depths.push_back(seen.depth_m); });
   EXPECT_EQ(depths, (std::vector<float>{7.0F, 5.0F, 7.0F}));
 }
 

@@ -63,7 +63,6 @@ void CameraLidarStage::push(std::size_t lidar, const BatchedSweepPtr& batches) {
   enqueue(lidarInput(lidar), batches->stamp, [this, batches] {
     if (batches->batches.empty()) counters_.skip("sweep", Reason::kNoPoseYet);
     window_.push(batches);
-    window_.forget(batches->stamp);
   });
 }
 
@@ -80,10 +79,7 @@ void CameraLidarStage::take(std::size_t camera, const Detections& detections) {
   const std::optional<CameraInfo>& info = camera_info_[camera];
   const Outcome<Pose> T_imu_camera =
       info ? rig_.T_imu(info->frame) : Outcome<Pose>(Reason::kMissingIntrinsics);
-  Waiting waiting{camera, detections, info, T_imu_camera, {}};
-  for (const BatchedSweepPtr& sweep : window_.sweeps()) {
-    if (sweep->stamp > detections.stamp - window_.length()) waiting.sweeps.push_back(sweep);
-  }
+  Waiting waiting{camera, detections, info, T_imu_camera, window_.since(detections.stamp)};
   waiting_.push_back(std::move(waiting));
   answerReady();
 }
@@ -149,7 +145,7 @@ std::vector<Frustum> CameraLidarStage::frustumsOf(const Waiting& waiting, const 
   }
   if (candidates.empty()) return {};
   const Pose T_camera_map = T_map_camera.inverse();
-  for (const BatchedSweepPtr& sweep : waiting.sweeps) {
+  for (const BoundedSweepPtr& sweep : waiting.sweeps) {
     intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
       for (Candidate& c : candidates) {
         const bool inside =

@@ -10,9 +10,9 @@
 
 #include "atlas/base/stage.hpp"
 #include "atlas/calibration/rig.hpp"
+#include "atlas/camera/camera_window.hpp"
 #include "atlas/camera/intrinsics_cache.hpp"
 #include "atlas/camera/pose_history.hpp"
-#include "atlas/lidar/sweep_window.hpp"
 #include "atlas/sensor/products.hpp"
 
 namespace atlas {
@@ -64,7 +64,7 @@ class CameraLidarStage : public Stage {
     Detections detections;
     std::optional<CameraInfo> info;       ///< newest at the image's turn
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
-    std::vector<BatchedSweepPtr> sweeps;  ///< the window at the image's turn
+    std::vector<BoundedSweepPtr> sweeps;  ///< the window at the image's turn
   };
   void take(std::size_t camera, const Detections& detections);
   void answerReady();
@@ -75,7 +75,7 @@ class CameraLidarStage : public Stage {
   CameraLidarParams params_;
   Rig rig_;
   PoseHistory poses_;
-  SweepWindow window_;
+  CameraWindow window_;
   std::vector<std::optional<CameraInfo>> camera_info_;  ///< newest per camera
   std::vector<IntrinsicsCache> intrinsics_;             ///< per camera
   std::deque<Waiting> waiting_;                         ///< in merged order

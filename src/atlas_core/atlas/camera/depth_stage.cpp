@@ -61,7 +61,6 @@ void DepthStage::push(std::size_t lidar, const BatchedSweepPtr& batches) {
   enqueue(lidarInput(lidar), batches->stamp, [this, batches] {
     if (batches->batches.empty()) counters_.skip("sweep", Reason::kNoPoseYet);
     window_.push(batches);
-    window_.forget(batches->stamp);
   });
 }
 
@@ -71,10 +70,7 @@ void DepthStage::push(std::size_t camera, const CameraInfo& info) {
 }
 
 void DepthStage::take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index) {
-  Waiting waiting{camera, image_index, info, rig_.T_imu(info.frame), {}};
-  for (const BatchedSweepPtr& sweep : window_.sweeps()) {
-    if (sweep->stamp > info.stamp - window_.length()) waiting.sweeps.push_back(sweep);
-  }
+  Waiting waiting{camera, image_index, info, rig_.T_imu(info.frame), window_.since(info.stamp)};
   waiting_.push_back(std::move(waiting));
   answerReady();
 }
@@ -125,7 +121,7 @@ Outcome<cv::Mat> DepthStage::render(const Waiting& waiting, const Intrinsics& in
   const Pose T_camera_map = (*T_map_imu * *waiting.T_imu_camera).inverse();
   DepthBuffer buffer(intrinsics.model.width(), intrinsics.model.height());
   std::uint64_t seen = 0;
-  for (const BatchedSweepPtr& sweep : waiting.sweeps) {
+  for (const BoundedSweepPtr& sweep : waiting.sweeps) {
     intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
       buffer.add(point);
       ++seen;

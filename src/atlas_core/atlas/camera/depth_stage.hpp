@@ -10,9 +10,9 @@
 
 #include "atlas/base/stage.hpp"
 #include "atlas/calibration/rig.hpp"
+#include "atlas/camera/camera_window.hpp"
 #include "atlas/camera/intrinsics_cache.hpp"
 #include "atlas/camera/pose_history.hpp"
-#include "atlas/lidar/sweep_window.hpp"
 #include "atlas/sensor/products.hpp"
 
 namespace atlas {
@@ -58,7 +58,7 @@ class DepthStage : public Stage {
     std::uint32_t image_index;
     CameraInfo info;
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
-    std::vector<BatchedSweepPtr> sweeps;  ///< the window at the image's turn
+    std::vector<BoundedSweepPtr> sweeps;  ///< the window at the image's turn
   };
   void take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index);
   void answerReady();
@@ -70,7 +70,7 @@ class DepthStage : public Stage {
   DepthParams params_;
   Rig rig_;
   PoseHistory poses_;
-  SweepWindow window_;
+  CameraWindow window_;
   std::vector<IntrinsicsCache> intrinsics_;  ///< per camera
   std::vector<std::uint32_t> image_count_;   ///< per camera: index of its next image
   std::deque<Waiting> waiting_;              ///< in merged order

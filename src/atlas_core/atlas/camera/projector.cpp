@@ -7,6 +7,7 @@ namespace atlas {
 namespace {
 constexpr int kBorderSteps = 64;        // bearings taken along each side of the image
 constexpr double kBorderMargin = 0.01;  // what a side may bow out between two of them, and float rounding
+constexpr float kRounding_m = 0.01F;    // far above what float arithmetic loses on a few hundred metres
 }  // namespace
 
 Projector::Projector(const CameraModel& model, double min_depth_m, double max_depth_m)
@@ -21,6 +22,19 @@ Projector::Projector(const CameraModel& model, double min_depth_m, double max_de
       max_tangent_sq_(static_cast<float>(model.maxTangent() * model.maxTangent())),
       distortion_(model.distortion().cast<float>()) {
   boundField(model);
+}
+
+// The conditions of project() are linear in p while x and y are not yet divided by z, so each is a
+// half-space: when even the best point of the bounds misses one, none is seen.
+bool Projector::maySee(const Eigen::Matrix<float, 3, 4>& T_camera_lidar, const BatchBounds& bounds) const {
+  if (bounds.empty()) return false;
+  const auto reaches = [&](const Eigen::RowVector4f& side, float at_least) {
+    return bounds.largest(side.head<3>(), side(3)) >= at_least - kRounding_m;
+  };
+  const Eigen::RowVector4f x = T_camera_lidar.row(0), y = T_camera_lidar.row(1), z = T_camera_lidar.row(2);
+  return reaches(z, min_depth_m_) && reaches(-z, -max_depth_m_) &&          //
+         reaches(x - min_x_ * z, 0.0F) && reaches(max_x_ * z - x, 0.0F) &&  //
+         reaches(y - min_y_ * z, 0.0F) && reaches(max_y_ * z - y, 0.0F);
 }
 
 void Projector::boundField(const CameraModel& model) {

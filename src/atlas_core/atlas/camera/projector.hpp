@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "atlas/base/geometry.hpp"
+#include "atlas/camera/batch_bounds.hpp"
 #include "atlas/camera/camera_model.hpp"
 #include "atlas/sensor/products.hpp"
 
@@ -43,19 +44,35 @@ class Projector {
     return seen.u >= -0.5F && seen.v >= -0.5F && seen.u < right_ && seen.v < bottom_;
   }
 
+  /// False when no point inside the bounds can be seen.
+  [[nodiscard]] bool maySee(const Eigen::Matrix<float, 3, 4>& T_camera_lidar,
+                            const BatchBounds& bounds) const;
+
   /// Calls visit(const ProjectedPoint&) for every point of the sweep that is seen, in the sweep's order.
   template <class Visit>
-  void projectSweep(const BatchedSweep& sweep, const Pose& T_camera_map, Visit&& visit) const {
+  void projectSweep(const BoundedSweep& bounded, const Pose& T_camera_map, Visit&& visit) const {
+    const BatchedSweep& sweep = *bounded.batched;
     std::vector<Eigen::Matrix<float, 3, 4>> T_camera_lidar;  // of each batch
-    T_camera_lidar.reserve(sweep.batches.size());
-    for (const Batch& batch : sweep.batches)
-      T_camera_lidar.push_back((T_camera_map * batch.T_map_lidar).matrix34f());
+    std::vector<bool> in_view;
+    for (std::size_t b = 0; b < sweep.batches.size(); ++b) {
+      T_camera_lidar.push_back((T_camera_map * sweep.batches[b].T_map_lidar).matrix34f());
+      in_view.push_back(maySee(T_camera_lidar[b], bounded.bounds[b]));
+    }
     const LidarPoint* points = sweep.sweep->points.data();
     ProjectedPoint seen;
-    forEachPoint(sweep, [&](std::size_t i, const Batch& batch) {
-      const auto b = static_cast<std::size_t>(&batch - sweep.batches.data());
-      if (project(T_camera_lidar[b], points[i], seen)) visit(seen);
-    });
+    if (sweep.batch_of_point.empty()) {
+      for (std::size_t b = 0; b < sweep.batches.size(); ++b) {
+        const std::size_t end = in_view[b] ? sweep.batches[b].first + sweep.batches[b].count : 0;
+        for (std::size_t i = sweep.batches[b].first; i < end; ++i) {
+          if (project(T_camera_lidar[b], points[i], seen)) visit(seen);
+        }
+      }
+      return;
+    }
+    for (std::size_t i = 0; i < sweep.batch_of_point.size(); ++i) {
+      const std::size_t b = sweep.batch_of_point[i];
+      if (in_view[b] && project(T_camera_lidar[b], points[i], seen)) visit(seen);
+    }
   }
 
  private:

@@ -23,7 +23,20 @@ double fractile(std::vector<double>& values, double fraction) {
   return values[static_cast<std::size_t>(k)];
 }
 
+double median(std::vector<double>& values) {
+  const double lower = fractile(values, 0.5);  // what lies behind it is not smaller
+  if (values.size() % 2 == 1) return lower;
+  return 0.5 * (lower + *std::min_element(values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                                          values.end()));
+}
+
 }  // namespace
+
+/// Which points lie in which cell.
+struct GroundGrid::PointsOfCells {
+  std::vector<std::uint32_t> begin;    ///< into members, one more than cells
+  std::vector<std::uint32_t> members;  ///< point indices, ascending within a cell
+};
 
 template <class Use>
 void GroundGrid::forNeighbours(int ix, int iy, int reach, Use&& use) const {
@@ -46,10 +59,11 @@ GroundGrid::GroundGrid(const std::vector<LidarPoint>& points, const Eigen::Vecto
   vehicle_x_ = (center_map.x() - origin_x_) / edge;
   vehicle_y_ = (center_map.y() - origin_y_) / edge;
   cells_.assign(static_cast<std::size_t>(side_ * side_), Cell{});
-  propose(points);
+  const PointsOfCells in_cells = sortIntoCells(points);
+  propose(points, in_cells);
   grow();
   fill();
-  center(points);
+  center(points, in_cells);
 }
 
 bool GroundGrid::cellOf(double x, double y, int& ix, int& iy) const {
@@ -61,21 +75,34 @@ bool GroundGrid::cellOf(double x, double y, int& ix, int& iy) const {
   return true;
 }
 
-void GroundGrid::propose(const std::vector<LidarPoint>& points) {
-  std::vector<std::pair<std::uint32_t, double>> heights;  // (cell, z)
-  heights.reserve(points.size());
+GroundGrid::PointsOfCells GroundGrid::sortIntoCells(const std::vector<LidarPoint>& points) const {
+  constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();
+  PointsOfCells result;
+  result.begin.assign(cells_.size() + 1, 0);
+  std::vector<std::uint32_t> cell_of_point(points.size(), kOutside);
   int ix = 0, iy = 0;
-  for (const LidarPoint& p : points) {
-    if (cellOf(p.x, p.y, ix, iy)) heights.emplace_back(static_cast<std::uint32_t>(iy * side_ + ix), p.z);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!cellOf(points[i].x, points[i].y, ix, iy)) continue;
+    cell_of_point[i] = static_cast<std::uint32_t>(iy * side_ + ix);
+    ++result.begin[cell_of_point[i] + 1];
   }
-  std::sort(heights.begin(), heights.end());
-  for (Cell& c : cells_) c.proposal_m = kNan;
-  for (std::size_t begin = 0; begin < heights.size();) {
-    std::size_t end = begin;
-    while (end < heights.size() && heights[end].first == heights[begin].first) ++end;
-    const auto low = static_cast<std::size_t>(kLowFraction * static_cast<double>(end - begin));
-    cells_[heights[begin].first].proposal_m = heights[begin + low].second;
-    begin = end;
+  for (std::size_t i = 1; i < result.begin.size(); ++i) result.begin[i] += result.begin[i - 1];
+  result.members.resize(result.begin.back());
+  std::vector<std::uint32_t> next(result.begin.begin(), result.begin.end() - 1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (cell_of_point[i] != kOutside)
+      result.members[next[cell_of_point[i]]++] = static_cast<std::uint32_t>(i);
+  }
+  return result;
+}
+
+void GroundGrid::propose(const std::vector<LidarPoint>& points, const PointsOfCells& in_cells) {
+  std::vector<double> heights;
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    heights.clear();
+    for (std::uint32_t i = in_cells.begin[cell]; i < in_cells.begin[cell + 1]; ++i)
+      heights.push_back(points[in_cells.members[i]].z);
+    cells_[cell].proposal_m = heights.empty() ? kNan : fractile(heights, kLowFraction);
   }
 }
 
@@ -116,7 +143,9 @@ void GroundGrid::grow() {
 }
 
 void GroundGrid::visit(int ix, int iy, double seed_m) {
-  std::vector<double> believed, guessed;
+  std::vector<double>&believed = believed_, &guessed = guessed_;
+  believed.clear();
+  guessed.clear();
   double believed_reach_m = 0.0, doubt_m = kMaxDoubt_m;
   forNeighbours(ix, iy, kReach, [&](const Cell& neighbour, double distance_m) {
     if (!neighbour.visited) return;
@@ -162,22 +191,22 @@ void GroundGrid::fill() {
   }
 }
 
-/// The lowest points of a cell lie at its lower end on a slope; the mean of its ground points lies in its
-/// middle.
-void GroundGrid::center(const std::vector<LidarPoint>& points) {
-  std::vector<std::pair<double, std::uint32_t>> sums(cells_.size(), {0.0, 0U});
-  int ix = 0, iy = 0;
-  for (const LidarPoint& p : points) {
-    if (!cellOf(p.x, p.y, ix, iy) || !cell(ix, iy).believed) continue;
-    const double above_m = static_cast<double>(p.z) - heightAt(p.x, p.y);
-    if (std::abs(above_m) > params_.tolerance_m) continue;
-    auto& [sum, count] = sums[static_cast<std::size_t>(iy * side_ + ix)];
-    sum += static_cast<double>(p.z);
-    ++count;
+/// The lowest points of a cell lie at its lower end on a slope, and below the road by their noise: the median
+/// of its ground points above the surface so far lies in its middle. A mean would be lifted by the feet of
+/// what stands on the road.
+void GroundGrid::center(const std::vector<LidarPoint>& points, const PointsOfCells& in_cells) {
+  std::vector<double> lifts_m(cells_.size(), 0.0), above_m;
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    if (!cells_[cell].believed) continue;
+    above_m.clear();
+    for (std::uint32_t i = in_cells.begin[cell]; i < in_cells.begin[cell + 1]; ++i) {
+      const LidarPoint& p = points[in_cells.members[i]];
+      const double above = static_cast<double>(p.z) - heightAt(p.x, p.y);
+      if (std::abs(above) <= params_.tolerance_m) above_m.push_back(above);
+    }
+    if (above_m.size() >= 3) lifts_m[cell] = median(above_m);
   }
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    if (sums[i].second >= 3) cells_[i].height_m = sums[i].first / sums[i].second;
-  }
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) cells_[cell].height_m += lifts_m[cell];
 }
 
 double GroundGrid::heightAt(double x, double y) const {

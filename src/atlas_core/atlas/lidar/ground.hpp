@@ -40,12 +40,14 @@ class GroundGrid {
     double doubt_m = 0;  ///< distance to the nearest believed cell that the height rests on
     bool believed = false, visited = false;
   };
-  void propose(const std::vector<LidarPoint>& points);
+  struct PointsOfCells;
+  [[nodiscard]] PointsOfCells sortIntoCells(const std::vector<LidarPoint>& points) const;
+  void propose(const std::vector<LidarPoint>& points, const PointsOfCells& in_cells);
   [[nodiscard]] double seedHeight() const;
   void grow();
   void visit(int ix, int iy, double seed_m);
   void fill();
-  void center(const std::vector<LidarPoint>& points);
+  void center(const std::vector<LidarPoint>& points, const PointsOfCells& in_cells);
   [[nodiscard]] bool cellOf(double x, double y, int& ix, int& iy) const;
   [[nodiscard]] const Cell& cell(int ix, int iy) const {
     return cells_[static_cast<std::size_t>(iy * side_ + ix)];
@@ -62,6 +64,7 @@ class GroundGrid {
          origin_y_ = 0;  ///< corner of cell (0, 0), on multiples of the cell: the grid does not swim
   double vehicle_x_ = 0, vehicle_y_ = 0;  ///< cells
   std::vector<Cell> cells_;
+  std::vector<double> believed_, guessed_;  ///< of visit(), kept for their memory
 };
 
 }  // namespace atlas

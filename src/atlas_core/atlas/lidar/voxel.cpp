@@ -5,25 +5,6 @@
 #include <string>
 
 namespace atlas {
-namespace {
-
-constexpr double kMaxCoordinate = 2147483000.0;  ///< voxels; inside int32
-
-/// floor, without the library call that plain x86-64 makes for std::floor.
-std::int32_t floorToInt(double value) {
-  const auto truncated = static_cast<std::int32_t>(value);
-  return truncated - (value < static_cast<double>(truncated) ? 1 : 0);
-}
-
-bool fits(double value) { return value > -kMaxCoordinate && value < kMaxCoordinate; }  // false for NaN
-
-}  // namespace
-
-std::optional<VoxelKey> voxelOf(double x, double y, double z, double edge_m) {
-  const double vx = x / edge_m, vy = y / edge_m, vz = z / edge_m;
-  if (!fits(vx) || !fits(vy) || !fits(vz)) return std::nullopt;
-  return VoxelKey{floorToInt(vx), floorToInt(vy), floorToInt(vz)};
-}
 
 VoxelFilter::VoxelFilter(double edge_m, VoxelPoint keep, std::size_t expected)
     : edge_m_(edge_m), keep_(keep), index_(expected) {

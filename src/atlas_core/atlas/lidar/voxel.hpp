@@ -13,7 +13,17 @@ namespace atlas {
 
 /// The voxel that holds a point: floor(coordinate / edge). Nothing for NaN, infinity, or beyond 2^31 voxels
 /// of the origin.
-[[nodiscard]] std::optional<VoxelKey> voxelOf(double x, double y, double z, double edge_m);
+[[nodiscard]] inline std::optional<VoxelKey> voxelOf(double x, double y, double z, double edge_m) {
+  constexpr double kMax = 2147483000.0;  // voxels; inside int32
+  const double vx = x / edge_m, vy = y / edge_m, vz = z / edge_m;
+  const auto fits = [](double value) { return value > -kMax && value < kMax; };  // false for NaN
+  if (!fits(vx) || !fits(vy) || !fits(vz)) return std::nullopt;
+  const auto floorToInt = [](double value) {  // std::floor is a library call on plain x86-64
+    const auto truncated = static_cast<std::int32_t>(value);
+    return truncated - (value < static_cast<double>(truncated) ? 1 : 0);
+  };
+  return VoxelKey{floorToInt(vx), floorToInt(vy), floorToInt(vz)};
+}
 
 /// Which point stands for a voxel.
 enum class VoxelPoint {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The sweeps that an image may be made from: those of the last seconds before it.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "atlas/base/time.hpp"
+#include "atlas/camera/batch_bounds.hpp"
+
+namespace atlas {
+
+class CameraWindow {
+ public:
+  explicit CameraWindow(Duration length) : length_(length) {}
+
+  /// Sweeps come in stamp order; those without pose are not kept, those that no image at or after this stamp
+  /// can see are dropped.
+  void push(const BatchedSweepPtr& batched) {
+    if (!batched->batches.empty()) sweeps_.push_back(withBounds(batched));
+    while (!sweeps_.empty() && sweeps_.front()->batched->stamp <= batched->stamp - length_)
+      sweeps_.pop_front();
+  }
+  /// Those with a stamp in (stamp - length, ...], oldest first.
+  [[nodiscard]] std::vector<BoundedSweepPtr> since(Stamp stamp) const {
+    std::vector<BoundedSweepPtr> result;
+    for (const BoundedSweepPtr& sweep : sweeps_) {
+      if (sweep->batched->stamp > stamp - length_) result.push_back(sweep);
+    }
+    return result;
+  }
+  [[nodiscard]] std::size_t size() const { return sweeps_.size(); }
+
+ private:
+  Duration length_;
+  std::deque<BoundedSweepPtr> sweeps_;
+};
+
+}  // namespace atlas
