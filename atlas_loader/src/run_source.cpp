@@ -15,6 +15,7 @@ namespace {
 constexpr const char* kSourceName = "source";
 constexpr atlas::Duration kPromiseStep = 20 * atlas::kMillisecond;  // of event time
 constexpr std::chrono::milliseconds kPoll(100);
+constexpr std::chrono::seconds kPatience(10);  // of wall time before a stage that everything waits for is named
 }  // namespace
 
 void validate(const RunSourceParams& params) {
@@ -154,11 +155,25 @@ atlas::Stamp RunSource::slowest() const {
   return result;
 }
 
+std::string RunSource::slowestInWords() const {
+  const atlas::Stamp behind = slowest();
+  std::string names;
+  for (const auto& [name, stage] : stages_) {
+    if (stage.reached == behind) names += (names.empty() ? "" : ", ") + name;
+  }
+  if (behind == atlas::kBeginOfTime) return names + " (no progress yet)";
+  return names + " (" + std::to_string(atlas::toSeconds(promised_ - behind)) + " s behind)";
+}
+
 bool RunSource::awaitStages(const std::function<bool()>& condition) {
   std::unique_lock<std::mutex> lock(mutex_);
+  auto said = std::chrono::steady_clock::now();
   while (failure_.empty() && ros::ok()) {
     if (condition()) return true;
     changed_.wait_for(lock, kPoll);
+    if (std::chrono::steady_clock::now() - said < kPatience) continue;
+    said = std::chrono::steady_clock::now();
+    ROS_WARN("waiting for the slowest stage: %s", slowestInWords().c_str());
   }
   return false;
 }

@@ -68,6 +68,7 @@ class RunSource {
   void send(const atlas::Event& event);
   bool awaitStages(const std::function<bool()>& condition);
   [[nodiscard]] atlas::Stamp slowest() const;
+  [[nodiscard]] std::string slowestInWords() const;
 
   ros::NodeHandle handle_;
   RunSourceParams params_;

@@ -18,7 +18,7 @@ import time
 import unittest
 from pathlib import Path
 
-LIMIT_S = 240
+LIMIT_S = 90
 DURATION_S = "8"
 
 
@@ -106,14 +106,22 @@ class Run(unittest.TestCase):
         finally:
             for loop in loops:
                 loop.kill()
-            for child in [process] + ([helper] if helper else []):
-                if child.poll() is None:
-                    os.killpg(child.pid, signal.SIGKILL)
+            if process.poll() is None:  # roslaunch gives every node a session of its own and ends them only on SIGINT
+                process.send_signal(signal.SIGINT)
+                self.kill_after(process, 20)
+            if helper:
+                self.kill_after(helper, 1)
         deadline = time.monotonic() + 10
         while processes_of(self.port) and time.monotonic() < deadline:
             time.sleep(0.2)
         self.assertEqual(processes_of(self.port), [], "processes left behind")
         return out
+
+    def kill_after(self, process, patience_s):
+        try:
+            process.wait(timeout=patience_s)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
 
     def wait_for(self, log, text):
         deadline = time.monotonic() + 60

@@ -28,8 +28,9 @@ class BagReader : public atlas::RecordReader {
     readStaticTransforms();
     rosbag::View whole(bag_);
     if (whole.size() > 0) span_ = {fromTime(whole.getBeginTime()), fromTime(whole.getEndTime())};
-    begin_ = span_.first + atlas::fromSeconds(options.start_s);
-    end_ = options.duration_s < 0 ? atlas::kEndOfTime : begin_ + atlas::fromSeconds(options.duration_s);
+    // Without a start nothing is cut off: what was measured before the first record time belongs to the bag too.
+    if (options.start_s > 0) begin_ = span_.first + atlas::fromSeconds(options.start_s);
+    end_ = options.duration_s < 0 ? atlas::kEndOfTime : std::max(begin_, span_.first) + atlas::fromSeconds(options.duration_s);
     std::vector<std::string> topics;
     for (const auto& [topic, stream] : stream_of_) topics.push_back(topic);
     view_.addQuery(bag_, rosbag::TopicQuery(topics), begin_ > 0 ? toTime(begin_) : ros::TIME_MIN, ros::TIME_MAX);
@@ -44,7 +45,7 @@ class BagReader : public atlas::RecordReader {
   std::optional<atlas::Event> next() override {
     if (!transforms_given_) {
       transforms_given_ = true;
-      if (!transforms_.transforms.empty()) return atlas::Event{begin_, 0, transforms_};
+      if (!transforms_.transforms.empty()) return atlas::Event{std::max(begin_, span_.first), 0, transforms_};
     }
     while (next_ != view_.end() && !nextIsDue()) take();
     if (buffer_.empty()) return std::nullopt;

@@ -5,13 +5,21 @@
 #include <exception>
 #include <utility>
 
+#include "atlas_ros/stage_diagnostics.hpp"
+
 namespace atlas_ros {
 namespace {
 /// Progress is published in steps of event time: fine enough for the pacing, cheap enough at hundreds of Hz.
 constexpr atlas::Duration kProgressStep = 20 * atlas::kMillisecond;
 }  // namespace
 
-StageLink::StageLink(const ros::NodeHandle& handle, std::string stage_name) : handle_(handle), name_(std::move(stage_name)) {}
+StageLink::StageLink(const ros::NodeHandle& handle, std::string stage_name)
+    : handle_(handle), name_(std::move(stage_name)), diagnostics_(handle_, handle_, handle_.resolveName(name_)) {
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("stage", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    describeStage(stage_.get(), unusable_, error_, status);
+  });
+}
 
 StageLink::~StageLink() = default;
 
@@ -118,6 +126,8 @@ void StageLink::afterEvents() {
   if (ended && on_end) on_end();
   publishProgress();
   if (ended) running_ = false;
+  if (ended) diagnostics_.force_update();
+  if (!ended) diagnostics_.update();
 }
 
 void StageLink::publishProgress() {
@@ -131,18 +141,9 @@ void StageLink::publishProgress() {
     msg.counts.push_back(output->count);
   }
   if (stage_->ended()) {
-    for (const atlas::Counters* counters : {&stage_->counters(), static_cast<const atlas::Counters*>(&unusable_)}) {
-      for (const auto& [name, value] : counters->all()) {
-        msg.counter_names.push_back(name);
-        msg.counter_values.push_back(value);
-      }
-    }
-    const atlas::EventMerge& merge = stage_->merge();
-    for (std::size_t i = 0; i < merge.streams(); ++i) {
-      msg.counter_names.push_back("received " + merge.name(i));
-      msg.counter_values.push_back(merge.received(i));
-      msg.counter_names.push_back("late " + merge.name(i));
-      msg.counter_values.push_back(merge.late(i));
+    for (const auto& [name, value] : countsOf(*stage_, unusable_)) {
+      msg.counter_names.push_back(name);
+      msg.counter_values.push_back(value);
     }
   }
   progress_.publish(msg);
@@ -154,6 +155,8 @@ void StageLink::guarded(const std::function<void()>& body) {
     body();
   } catch (const std::exception& error) {
     failed_ = true;
+    error_ = error.what();
+    diagnostics_.force_update();
     ROS_FATAL("%s: %s; the run fails", name_.c_str(), error.what());
     atlas_msgs::StageProgress msg;
     msg.stage = name_;

@@ -7,6 +7,7 @@
 #include <atlas_msgs/GraphStart.h>
 #include <atlas_msgs/StageHello.h>
 #include <atlas_msgs/StageProgress.h>
+#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 #include <std_msgs/Empty.h>
 
@@ -120,6 +121,8 @@ class StageLink {
   std::uint32_t epoch_ = 0;
   bool running_ = false;   ///< between GraphStart and the end of the epoch
   bool failed_ = false;
+  std::string error_;
+  diagnostic_updater::Updater diagnostics_;  ///< one status a second of event time; never an input of anything
   atlas::Stamp published_ = atlas::kBeginOfTime;
 };
 
