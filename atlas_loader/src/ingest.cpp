@@ -18,6 +18,7 @@ void Ingest::startEpoch() {
   merge_ = std::make_unique<atlas::EventMerge>(std::move(names));
   newest_of_.assign(streams_.size(), atlas::kBeginOfTime);
   newest_ = oldest_ = atlas::kBeginOfTime;
+  for (const auto& [stream, event] : transforms_) pushToMerge(stream, 0, event.stamp, event.payload);
 }
 
 void Ingest::endEpoch() {
@@ -33,17 +34,37 @@ void Ingest::push(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload
     put({Item::Kind::kEndOfEpoch, std::nullopt});
     startEpoch();
   }
-  const atlas::Stamp order = is_static ? 0 : stamp;  // transforms that never change come first
-  auto shared = std::make_shared<atlas::Payload>(std::move(payload));
-  merge_->push(stream, order, [this, stream, stamp, shared] {
-    put({Item::Kind::kEvent, atlas::Event{stamp, stream, std::move(*shared)}});
-  });
-  if (is_static) return;
+  if (is_static) {  // they hold until the publisher has gone: a recording that loops may repeat them or not
+    if (isKnown(payload)) return;
+    transforms_.push_back({stream, {stamp, stream, payload}});
+    pushToMerge(stream, 0, stamp, std::move(payload));  // transforms that never change come first
+    return;
+  }
+  pushToMerge(stream, stamp, stamp, std::move(payload));
   newest_of_[stream] = std::max(newest_of_[stream], stamp);
   oldest_ = oldest_ == atlas::kBeginOfTime ? stamp : std::min(oldest_, stamp);
   if (stamp <= newest_) return;
   newest_ = stamp;
   advanceSilent();
+}
+
+void Ingest::pushToMerge(std::size_t stream, atlas::Stamp order, atlas::Stamp stamp, atlas::Payload payload) {
+  auto shared = std::make_shared<atlas::Payload>(std::move(payload));
+  merge_->push(stream, order, [this, stream, stamp, shared] {
+    put({Item::Kind::kEvent, atlas::Event{stamp, stream, std::move(*shared)}});
+  });
+}
+
+bool Ingest::isKnown(const atlas::Payload& payload) const {
+  const auto& transforms = std::get<atlas::StaticTransforms>(payload).transforms;
+  const auto same = [](const atlas::StaticTransform& a, const atlas::StaticTransform& b) {
+    return a.parent == b.parent && a.child == b.child && a.T_parent_child.translation == b.T_parent_child.translation &&
+           a.T_parent_child.rotation.coeffs() == b.T_parent_child.rotation.coeffs();
+  };
+  return std::any_of(transforms_.begin(), transforms_.end(), [&](const auto& entry) {
+    const auto& known = std::get<atlas::StaticTransforms>(entry.second.payload).transforms;
+    return std::equal(known.begin(), known.end(), transforms.begin(), transforms.end(), same);
+  });
 }
 
 /// Static transforms may arrive after the first measurements (another connection), so they get max_delay from the oldest one.
@@ -57,6 +78,7 @@ void Ingest::advanceSilent() {
 
 void Ingest::finish() {
   endEpoch();
+  transforms_.clear();
   put({Item::Kind::kEndOfRun, std::nullopt});
   startEpoch();
 }

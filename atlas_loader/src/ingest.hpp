@@ -41,11 +41,14 @@ class Ingest {
   void startEpoch();
   void endEpoch();
   void advanceSilent();
+  void pushToMerge(std::size_t stream, atlas::Stamp order, atlas::Stamp stamp, atlas::Payload payload);
+  [[nodiscard]] bool isKnown(const atlas::Payload& static_transforms) const;
   void put(Item item);
 
   std::vector<atlas::StreamInfo> streams_;
   atlas::Duration max_delay_;
   std::unique_ptr<atlas::EventMerge> merge_;
+  std::vector<std::pair<std::size_t, atlas::Event>> transforms_;  ///< static ones by stream; given again to each epoch
   std::vector<atlas::Stamp> newest_of_;  ///< per stream
   atlas::Stamp newest_ = atlas::kBeginOfTime, oldest_ = atlas::kBeginOfTime;  ///< of this epoch
   std::uint64_t late_before_ = 0, received_ = 0;

@@ -107,6 +107,26 @@ TEST(Ingest, TimeThatJumpsBackEndsTheEpoch) {
   EXPECT_EQ(ingest.late(), 0U);
 }
 
+TEST(Ingest, ALoopKeepsItsStaticTransformsWhetherItRepeatsThemOrNot) {
+  for (const bool repeated : {false, true}) {
+    Ingest ingest(streams(), atlas::kSecond);
+    const auto play = [&](bool with_transforms) {
+      if (with_transforms) ingest.push(0, kBegin, atlas::StaticTransforms{});
+      for (int i = 0; i <= 300; ++i) ingest.push(1, kBegin + i * kStep, imu(0));
+    };
+    play(true);
+    play(repeated);
+    ingest.finish();
+    std::vector<int> transforms(1, 0);
+    for (auto item = ingest.pop(); item->kind != Item::Kind::kEndOfRun; item = ingest.pop()) {
+      if (item->kind == Item::Kind::kEndOfEpoch) transforms.push_back(0);
+      if (item->event && item->event->stream == 0) ++transforms.back();
+    }
+    EXPECT_EQ(transforms, (std::vector<int>{1, 1})) << "repeated: " << repeated;
+    EXPECT_EQ(ingest.late(), 0U);
+  }
+}
+
 TEST(Ingest, StopWakesTheReader) {
   Ingest ingest(streams(), atlas::kSecond);
   ingest.stop();
