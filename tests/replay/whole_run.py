@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -47,6 +48,18 @@ def processes_of(port):
     return found
 
 
+def free_port():
+    """A port for a master, below the range that the system gives to connections."""
+    for port in range(12000 + os.getpid() % 10000, 32000):
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                continue
+    raise RuntimeError("no free port")
+
+
 def hashes(out):
     """SHA-256 of every output file but run.json, which holds timings."""
     result = {}
@@ -68,8 +81,7 @@ class Launched:
     """A launch file that runs; leaves no process behind when the block ends."""
 
     def __init__(self, test, name, launch_file, arguments):
-        WholeRun.port += 1
-        self.test, self.port, self.log = test, WholeRun.port, test.folder / (name + ".log")
+        self.test, self.port, self.log = test, free_port(), test.folder / (name + ".log")
         self.environment = environment(self.port, test.folder / "ros")
         self.output = open(self.log, "wb")
         self.children = []
@@ -118,7 +130,6 @@ class WholeRun(unittest.TestCase):
 
     folder = None
     keep = None
-    port = 20000 + os.getpid() % 20000
     duration_s = "8"
     options = ["--rgb-scale", "0.25"]
 

@@ -209,9 +209,11 @@ sensor_msgs::Imu toMsg(const atlas::GnssHeading& heading) {
   msg.orientation.z = std::sin(0.5 * heading.yaw_rad);
   msg.orientation.w = std::cos(0.5 * heading.yaw_rad);
   constexpr double kUnmeasured = 1e6;  // rad^2: roll and pitch carry no information
-  msg.orientation_covariance[0] = kUnmeasured;
-  msg.orientation_covariance[4] = kUnmeasured;
-  msg.orientation_covariance[8] = heading.variance_rad2 ? *heading.variance_rad2 : 0.0;  // 0: not given
+  if (heading.variance_rad2) {  // otherwise all zeros: "covariance unknown" by the definition of the message
+    msg.orientation_covariance[0] = kUnmeasured;
+    msg.orientation_covariance[4] = kUnmeasured;
+    msg.orientation_covariance[8] = *heading.variance_rad2;
+  }
   msg.angular_velocity_covariance[0] = kUnknown;
   msg.linear_acceleration_covariance[0] = kUnknown;
   return msg;
