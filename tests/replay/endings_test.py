@@ -54,7 +54,8 @@ class Endings(WholeRun):
         with self.launched("loop", "bringup.launch", []) as launched:
             launched.wait_for("ready for")
             player = launched.beside(self.play("--loop", "--rate", "2"))
-            launched.wait_for("the stages begin afresh", LIMIT_S, times=2)
+            launched.wait_for("complete:", LIMIT_S, times=2)
+            self.assertIn("the stages begin afresh", launched.log.read_text(errors="replace"))
             player.terminate()
         events = self.events_of_runs(launched.log)
         self.assertGreaterEqual(len(events), 2)
