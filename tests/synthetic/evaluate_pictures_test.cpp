@@ -32,7 +32,7 @@ class DepthTest : public EvaluateTest {
 };
 
 TEST_F(DepthTest, CopyOfTheTruthHasNoError) {
-  const auto result = compare(plain(20), plain(20))["depth"]["camera_ir"];
+  const auto result = compare(plain(20), plain(20))["depth_camera_ir"];
   EXPECT_EQ(result["error_m"]["max"], 0.0);
   EXPECT_EQ(result["error_m"]["count"], 40);
   EXPECT_EQ(result["outliers_percent"], 0.0);
@@ -44,7 +44,7 @@ TEST_F(DepthTest, ErrorsOutliersAndHolesAreToldApart) {
   run.row(0).setTo(0);                // 10 of 40 unknown
   run.row(1).setTo(256 * 23);         // 10 wrong by more than a tenth
   truth.at<std::uint16_t>(2, 0) = 0;  // 1 filled where the sky is
-  const auto result = compare(truth, run)["depth"]["camera_ir"];
+  const auto result = compare(truth, run)["depth_camera_ir"];
   EXPECT_EQ(result["filled_percent"], 75.0);
   EXPECT_NEAR(result["outliers_percent"], 100.0 * 11 / 30, 1e-9);
   EXPECT_NEAR(result["filled_on_sky_percent"], 100.0 / 30, 1e-9);
@@ -54,7 +54,7 @@ TEST_F(DepthTest, ErrorsOutliersAndHolesAreToldApart) {
 }
 
 TEST_F(DepthTest, EmptyImageHasAFillRateAndNoError) {
-  const auto result = compare(plain(20), plain(0))["depth"]["camera_ir"];
+  const auto result = compare(plain(20), plain(0))["depth_camera_ir"];
   EXPECT_EQ(result["filled_percent"], 0.0);
   EXPECT_FALSE(result.contains("error_m"));
   EXPECT_FALSE(result.contains("outliers_percent"));
@@ -62,7 +62,7 @@ TEST_F(DepthTest, EmptyImageHasAFillRateAndNoError) {
 
 TEST_F(DepthTest, OtherSizeOrNoFileIsNamed) {
   const auto result = compare(plain(20), cv::Mat(3, 10, CV_16UC1, cv::Scalar(1)));
-  EXPECT_FALSE(result.contains("depth"));
+  EXPECT_FALSE(result.contains("depth_camera_ir"));
   EXPECT_NE(result["skipped"].dump().find("000010.png"), std::string::npos);
   std::filesystem::remove(folders_.out / "depth" / "camera_ir" / "000010.png");
   Evaluation evaluation;

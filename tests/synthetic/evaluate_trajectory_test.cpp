@@ -86,7 +86,7 @@ TEST_F(TrajectoryTest, SettledPartBeginsAfterFiveSecondsOfDriving) {
   writeRun(run, anchorText(anchor_));
   const auto result = compare();
   EXPECT_NEAR(result["trajectory"]["heading_error_deg"]["max"], 30.0, 1e-4);
-  const auto after = result["trajectory"]["after_5_s_of_driving"];
+  const auto after = result["trajectory_after_5_s_of_driving"];
   EXPECT_NEAR(after["heading_error_deg"]["max"], 1.0, 1e-4);
   const std::size_t settled = after["heading_error_deg"]["count"];
   EXPECT_GT(settled, truth_.size() / 4 - 1);    // all beyond 15 of 20 s

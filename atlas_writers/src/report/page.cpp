@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "report/evaluation_table.hpp"
 #include "report/html.hpp"
 #include "report/map_picture.hpp"
 #include "report/number_text.hpp"
@@ -23,10 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-json readJson(const fs::path& path) {
+template <class Json>
+Json readJson(const fs::path& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
-  json value = json::parse(file, nullptr, false);
+  Json value = Json::parse(file, nullptr, false);
   if (value.is_discarded()) throw std::runtime_error(path.string() + ": is not JSON");
   return value;
 }
@@ -128,7 +130,7 @@ std::string subtitleOf(const json& run, const std::string& label) {
 }  // namespace
 
 fs::path writeReport(const PageOptions& options) {
-  const json run = readJson(options.out / "run.json");
+  const auto run = readJson<json>(options.out / "run.json");
   const fs::path folder = options.out / "report";
   fs::create_directories(folder);
   const std::vector<TrajectoryPoint> trajectory = readTum(options.out / "trajectory/trajectory.tum");
@@ -141,7 +143,7 @@ fs::path writeReport(const PageOptions& options) {
   body += toHtml(keyFigures(run, pathLength(trajectory)));
   if (!options.evaluation.empty()) {
     body += section("Errors against the truth of the synthetic drive",
-                    toHtml(numberTable(readJson(options.evaluation))));
+                    evaluationHtml(readJson<nlohmann::ordered_json>(options.evaluation)));
   }
   body += gallerySection(options, trajectory, folder) + tableSections(run);
   const std::string html = document("Atlas Fusion report", subtitleOf(run, options.record_label), body);

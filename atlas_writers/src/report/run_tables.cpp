@@ -43,19 +43,6 @@ std::uint64_t sumOf(const json& counts) {
   return sum;
 }
 
-void addNumbers(const json& value, const std::string& path, Table& table) {
-  if (value.is_object()) {
-    for (const auto& [key, item] : value.items()) {
-      addNumbers(item, path.empty() ? key : path + "/" + key, table);
-    }
-  } else if (value.is_number() || value.is_boolean() || value.is_null()) {
-    const std::size_t cut = path.rfind('/');
-    const NameAndUnit leaf = splitUnit(cut == std::string::npos ? path : path.substr(cut + 1));
-    std::string group = cut == std::string::npos ? "" : splitUnit(path.substr(0, cut)).name + " / ";
-    table.rows.push_back({group + leaf.name, textOf(value), leaf.unit});
-  }
-}
-
 }  // namespace
 
 std::vector<KeyFigure> keyFigures(const json& run, double path_length_m) {
@@ -104,13 +91,6 @@ Table stageTable(const json& run) {
   for (const auto& [stage, counters] : child(run, "stages").items()) {
     for (const auto& [name, value] : counters.items()) table.rows.push_back({stage, name, textOf(value)});
   }
-  return table;
-}
-
-Table numberTable(const json& value) {
-  Table table{{"quantity", "value", "unit"}, {}, 1};
-  addNumbers(value, "", table);
-  for (auto& row : table.rows) row.resize(3);
   return table;
 }
 

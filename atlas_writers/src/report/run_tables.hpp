@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tables of the report from run.json and from the comparison with the truth. Missing keys leave out rows,
-// nothing more.
+// Tables of the report from run.json. Missing keys leave out rows, nothing more.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,8 +18,6 @@ Table streamTable(const nlohmann::json& run);
 Table fileTable(const nlohmann::json& run);
 /// Counters of each stage.
 Table stageTable(const nlohmann::json& run);
-/// Every number of a JSON value of any shape: "position / horizontal rms", value, unit.
-Table numberTable(const nlohmann::json& value);
 /// The notes of the run as a list; empty text when there are none.
 std::string notesHtml(const nlohmann::json& run);
 

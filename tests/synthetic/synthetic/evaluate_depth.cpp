@@ -67,7 +67,7 @@ void evaluateDepth(const RunFolders& folders, Evaluation& evaluation) {
       errors.compare(truth, run);
     }
     if (errors.frames > 0) {
-      errors.report(label, evaluation);
+      errors.report("depth_" + camera, evaluation);
     } else {
       evaluation.skip(label + ": no frame with truth");
     }

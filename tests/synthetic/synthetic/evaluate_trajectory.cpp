@@ -72,7 +72,7 @@ void evaluateTrajectory(const RunFolders& folders, const std::string& name, cons
     if (settled && pose.stamp >= *settled) after.add(match->pose, in_truth);
   }
   all.report(name, evaluation);
-  after.report(name + "/after_5_s_of_driving", evaluation);
+  after.report(name + "_after_5_s_of_driving", evaluation);
   if (!truth.empty()) {
     const auto hits = static_cast<double>(std::count(answered.begin(), answered.end(), true));
     evaluation.add(name, "stamps_answered_percent", 100.0 * hits / static_cast<double>(truth.size()));
