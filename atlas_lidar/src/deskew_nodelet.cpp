@@ -2,6 +2,7 @@
 // Nodelet: sweeps become batches with one pose each, and clouds as seen from the pose at the sweep's stamp.
 #include <pluginlib/class_list_macros.hpp>
 
+#include "atlas/lidar/batched_points.hpp"
 #include "atlas_ros/stage_nodelet.hpp"
 
 namespace atlas_lidar {

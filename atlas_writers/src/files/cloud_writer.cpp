@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "atlas/lidar/deskew_stage.hpp"
+#include "atlas/lidar/batched_points.hpp"
 #include "atlas/output/pcd.hpp"
 #include "files/output_file.hpp"
 

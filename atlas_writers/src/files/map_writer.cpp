@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "atlas/lidar/deskew_stage.hpp"
+#include "atlas/lidar/batched_points.hpp"
 #include "atlas/lidar/voxel.hpp"
 #include "atlas/output/ply.hpp"
 #include "files/output_file.hpp"

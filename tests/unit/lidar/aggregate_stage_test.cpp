@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
+#include <random>
 
 #include "moving_lidar.hpp"
 
@@ -82,6 +85,33 @@ TEST(Aggregate, WatermarksDecideWhenNotWhat) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(plain.clouds[i]->stamp, watched.clouds[i]->stamp);
     EXPECT_EQ(plain.clouds[i]->points.size(), watched.clouds[i]->points.size());
+  }
+}
+
+TEST(Aggregate, ArrivalOrderHasNoInfluence) {
+  std::string expected;
+  for (unsigned seed = 0; seed < 25; ++seed) {
+    Clouds run(everyPoint());
+    std::mt19937 random(seed);
+    std::vector<std::size_t> turns;
+    for (std::size_t lidar = 0; lidar < 2; ++lidar) turns.insert(turns.end(), 25, lidar);
+    if (seed > 0) std::shuffle(turns.begin(), turns.end(), random);
+    std::array<int, 2> next{};
+    for (const std::size_t lidar : turns) {
+      const int i = next[lidar]++;
+      run.stage.push(lidar,
+                     onePoint(0.1 * i, 100.0 * static_cast<double>(lidar) + i));  // ties between the lidars
+      if (seed % 3 == 2) run.stage.advance(lidar, at(0.1 * i));
+    }
+    run.finish();
+    std::string all;
+    for (const MapCloudPtr& cloud : run.clouds) {
+      all += std::to_string(cloud->stamp) + ":";
+      for (const LidarPoint& p : cloud->points)
+        all += " " + std::to_string(p.x) + "@" + std::to_string(p.time);
+    }
+    if (seed == 0) expected = all;
+    EXPECT_EQ(all, expected) << "seed " << seed;
   }
 }
 

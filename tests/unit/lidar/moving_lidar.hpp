@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "atlas/base/trajectory.hpp"
+#include "atlas/lidar/batched_points.hpp"
 #include "atlas/lidar/deskew_stage.hpp"
 
 namespace atlas::test {

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 
 #include "moving_lidar.hpp"
 
@@ -132,6 +135,48 @@ TEST(ObstacleStage, OneAnswerForEachSweepOfTheFirstLidarOnceItsPoseIsKnown) {
   EXPECT_TRUE(answers[2].obstacles.empty()) << "the odometry ended before";
   EXPECT_EQ(stage.counters().get("skipped sweep: no pose yet"), 1U);
   EXPECT_EQ(stage.counters().get("skipped sweep: after the newest pose"), 1U);
+}
+
+TEST(ObstacleStage, ArrivalOrderHasNoInfluence) {
+  Scene scene;
+  scene.road();
+  scene.car(8, 1);
+  std::vector<Odometry> odometry;
+  std::array<std::vector<BatchedSweepPtr>, 2> sweeps;
+  for (int i = 0; i < 14; ++i) {
+    if (i < 5 || i > 9) odometry.push_back(standing(0.9 + 0.07 * i));  // a gap that is bridged
+  }
+  odometry.push_back(standing(3.0));  // and one that is not
+  for (int i = 0; i < 8; ++i) {
+    sweeps[0].push_back(scene.seen(0.8 + 0.1 * i));
+    sweeps[1].push_back(scene.seen(0.8 + 0.1 * i + (i % 2 == 0 ? 0.0 : 0.05)));
+  }
+  std::string expected;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    ObstacleStage stage({});
+    std::string all;
+    stage.on_obstacles = [&](const Obstacles& o) {
+      all += std::to_string(o.stamp) + ":";
+      for (const Obstacle& box : o.obstacles)
+        all += " " + std::to_string(box.center.x()) + "/" + std::to_string(box.points);
+    };
+    std::vector<std::size_t> turns(odometry.size(), 0);
+    for (const std::size_t input : {1U, 2U}) turns.insert(turns.end(), sweeps[input - 1].size(), input);
+    std::mt19937 random(seed);
+    if (seed > 0) std::shuffle(turns.begin(), turns.end(), random);
+    std::array<std::size_t, 3> next{};
+    for (const std::size_t input : turns) {
+      const std::size_t i = next[input]++;
+      if (input == 0) stage.push(odometry[i]);
+      if (input > 0) stage.push(input - 1, sweeps[input - 1][i]);
+      if (seed % 2 == 1 && input > 0) stage.advance(input, sweeps[input - 1][i]->stamp);
+    }
+    for (std::size_t i = 0; i < stage.inputs(); ++i) stage.finish(i);
+    for (const auto& [key, count] : stage.counters().all()) all += key + "=" + std::to_string(count) + "\n";
+    if (seed == 0) expected = all;
+    EXPECT_EQ(all, expected) << "seed " << seed;
+  }
+  EXPECT_NE(expected.find("skipped sweep: no pose yet=1"), std::string::npos) << expected;
 }
 
 TEST(ObstacleStage, RefusesParametersByName) {

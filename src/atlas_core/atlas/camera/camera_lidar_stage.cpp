@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atlas/camera/camera_lidar_stage.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -23,6 +24,29 @@ std::vector<std::string> inputNames(const CameraLidarParams& params) {
 [[noreturn]] void reject(const std::string& field, const std::string& need, double value) {
   throw std::invalid_argument("camera_lidar: " + field + " must be " + need + ", got " +
                               std::to_string(value));
+}
+
+/// A detection that lies in the image, and the depths of the points seen through it.
+struct Candidate {
+  std::uint32_t index;
+  Detection2d box;  ///< part in the image
+  std::vector<float> depths_m;
+};
+
+bool holds(const Detection2d& box, const ProjectedPoint& point) {
+  return point.u > box.x_min && point.u < box.x_max && point.v > box.y_min && point.v < box.y_max;
+}
+
+/// The smallest box around all boxes: most points of the road and of the sky lie outside.
+Detection2d around(const std::vector<Candidate>& candidates) {
+  Detection2d all = candidates.front().box;
+  for (const Candidate& c : candidates) {
+    all.x_min = std::min(all.x_min, c.box.x_min);
+    all.y_min = std::min(all.y_min, c.box.y_min);
+    all.x_max = std::max(all.x_max, c.box.x_max);
+    all.y_max = std::max(all.y_max, c.box.y_max);
+  }
+  return all;
 }
 
 }  // namespace
@@ -129,11 +153,6 @@ void CameraLidarStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map
 
 std::vector<Frustum> CameraLidarStage::frustumsOf(const Waiting& waiting, const Intrinsics& intrinsics,
                                                   const Pose& T_map_camera) {
-  struct Candidate {
-    std::uint32_t index;
-    Detection2d box;  ///< part in the image
-    std::vector<float> depths_m;
-  };
   std::vector<Candidate> candidates;
   for (std::uint32_t i = 0; i < waiting.detections.boxes.size(); ++i) {
     const Outcome<Detection2d> box = clipToImage(waiting.detections.boxes[i], intrinsics.model);
@@ -145,12 +164,12 @@ std::vector<Frustum> CameraLidarStage::frustumsOf(const Waiting& waiting, const 
   }
   if (candidates.empty()) return {};
   const Pose T_camera_map = T_map_camera.inverse();
+  const Detection2d all = around(candidates);
   for (const BoundedSweepPtr& sweep : waiting.sweeps) {
     intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
+      if (!holds(all, point)) return;
       for (Candidate& c : candidates) {
-        const bool inside =
-            point.u > c.box.x_min && point.u < c.box.x_max && point.v > c.box.y_min && point.v < c.box.y_max;
-        if (inside) c.depths_m.push_back(point.depth_m);
+        if (holds(c.box, point)) c.depths_m.push_back(point.depth_m);
       }
     });
   }

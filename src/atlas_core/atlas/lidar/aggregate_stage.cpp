@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "atlas/lidar/deskew_stage.hpp"
+#include "atlas/lidar/batched_points.hpp"
 #include "atlas/lidar/voxel.hpp"
 
 namespace atlas {

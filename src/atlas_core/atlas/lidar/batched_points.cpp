@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The lazy transforms carried out: one matrix per batch, one product per point, in double (map coordinates of
-// some kilometres leave a float product with errors of millimetres).
-#include <limits>
+// One matrix per batch, one product per point, in double (map coordinates of some kilometres leave a float
+// product with errors of millimetres).
+#include "atlas/lidar/batched_points.hpp"
 
-#include "atlas/lidar/deskew_stage.hpp"
+#include <limits>
 
 namespace atlas {
 namespace {

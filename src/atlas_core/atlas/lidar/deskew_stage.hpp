@@ -68,10 +68,4 @@ class DeskewStage : public Stage {
   std::deque<Waiting> waiting_;  ///< in stamp order
 };
 
-/// The sweep with every point moved to where it was seen from the lidar's pose at the sweep's stamp; NaN
-/// stays NaN, and all is NaN when there was no pose. `time` keeps saying when the point was measured.
-Sweep deskewed(const BatchedSweep& batched);
-/// All points in map, same order as the sweep, NaN kept; all is NaN when there was no pose.
-MapCloud inMap(const BatchedSweep& batched);
-
 }  // namespace atlas

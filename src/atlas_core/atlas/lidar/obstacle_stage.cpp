@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "atlas/lidar/batched_points.hpp"
 #include "atlas/lidar/clusters.hpp"
-#include "atlas/lidar/deskew_stage.hpp"
 #include "atlas/lidar/ground.hpp"
 #include "atlas/lidar/oriented_box.hpp"
 #include "atlas/lidar/voxel.hpp"

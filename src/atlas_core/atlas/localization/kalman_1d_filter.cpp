@@ -50,11 +50,13 @@ Kalman1dFilter::Kalman1dFilter(const PositioningParams& params, const Eigen::Vec
       heading_(headingParams(params)) {}
 
 void Kalman1dFilter::update(Stamp stamp, const Eigen::Vector3d& p_map_antenna, const Eigen::Matrix3d& R_m2) {
+  dropUnreachable(stamp);
   // Three independent filters: correlations between east, north and up are not used.
   pending_.push_back({stamp, Fix{p_map_antenna, R_m2.diagonal()}});
 }
 
 void Kalman1dFilter::updateHeading(Stamp stamp, double yaw_rad, double variance_rad2) {
+  dropUnreachable(stamp);
   pending_.push_back({stamp, Heading{yaw_rad, variance_rad2}});
 }
 
@@ -95,6 +97,12 @@ void Kalman1dFilter::skipPendingBefore(Stamp stamp, const char* why) {
     counters_.add(std::string("skipped ") + (fix ? "fix" : "heading") + ": " + why);
     pending_.pop_front();
   }
+}
+
+void Kalman1dFilter::dropUnreachable(Stamp now) {
+  // The next sample is not older than `now`: it will be the first one, or the one after a gap, and restarts.
+  const bool next_restarts = !current_ || toSeconds(now - current_->stamp) > params_.max_imu_gap_s;
+  if (next_restarts) skipPendingBefore(now, "no imu samples around it");
 }
 
 void Kalman1dFilter::usePending(const ImuSample& sample) {

@@ -49,6 +49,8 @@ class Kalman1dFilter : public PositioningFilter {
 
   void restart(const ImuSample& first);
   void skipPendingBefore(Stamp stamp, const char* why);
+  /// Keeps an IMU that has stopped from piling up fixes: those that no sample can surround any more go.
+  void dropUnreachable(Stamp now);
   void usePending(const ImuSample& sample);
   void stepTo(const ImuSample& sample);
   void correctTilt(const ImuSample& sample);

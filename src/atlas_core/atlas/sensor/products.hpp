@@ -34,9 +34,9 @@ struct Anchor {
 /// paper (section IV-B). A point is transformed when somebody asks for it: p_map = T_map_lidar(batch) *
 /// p_lidar.
 struct Batch {
-  std::uint32_t first = 0,
-                count = 0;  ///< range of points; unused where BatchedSweep::batch_of_point is given
-  Stamp stamp = 0;          ///< time of the pose
+  std::uint32_t first = 0;  ///< range of points; unused where BatchedSweep::batch_of_point is given
+  std::uint32_t count = 0;
+  Stamp stamp = 0;  ///< time of the pose
   Pose T_map_lidar;
 };
 struct BatchedSweep {
