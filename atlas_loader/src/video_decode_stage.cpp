@@ -5,6 +5,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "record/video_file.hpp"
+
 namespace atlas_loader {
 namespace {
 
@@ -36,11 +38,11 @@ void VideoDecodeStage::push(std::size_t camera, const atlas::VideoPacketPtr& pac
     Camera& c = cameras_[camera];
     if (!c.decoder) c.decoder = std::make_unique<atlas::VideoDecoder>(pixelsOf(camera));
     counters_.add("packets");
-    c.owed[packet->stamp] = true;
+    c.owed[packet->stamp] = packet->pts_index != atlas::kNoPicture;
     emit(camera, c.decoder->push(*packet));
     while (c.owed.size() > kMostOwed) {
+      if (c.owed.begin()->second) counters_.skip("picture", atlas::Reason::kEmpty);
       c.owed.erase(c.owed.begin());
-      counters_.skip("picture", atlas::Reason::kEmpty);
     }
   });
 }

@@ -39,7 +39,7 @@ class VideoDecodeStage : public atlas::Stage {
  private:
   struct Camera {
     std::unique_ptr<atlas::VideoDecoder> decoder;
-    std::map<atlas::Stamp, bool> owed;  ///< stamps of packets whose picture has not come out yet
+    std::map<atlas::Stamp, bool> owed;  ///< stamps of packets whose picture has not come out yet; true = has one
   };
   [[nodiscard]] atlas::Stamp heldBackFrom() const override;
   void onEnd() override;

@@ -21,18 +21,21 @@ struct Camera {
   std::shared_ptr<FrameTable> table;
   std::unique_ptr<VideoFile> video;
   std::optional<CameraInfo> info;
+  std::string video_fault;  ///< why there is no video
 };
 
 void openVideo(Camera& camera, RecordLog& log) {
   const fs::path path = camera.record / camera.name / "video.mp4";
   std::error_code error;
   if (!fs::exists(path, error)) {
+    camera.video_fault = "no video.mp4";
     log.note(camera.name + ": no video.mp4, no pictures");
     return;
   }
   try {
     camera.video = std::make_unique<VideoFile>(path);
   } catch (const std::runtime_error& failure) {
+    camera.video_fault = "video unreadable";
     log.note(camera.name + "/video.mp4: no pictures: " + failure.what());
     return;
   }
@@ -81,9 +84,15 @@ void addPictures(Camera& camera, const RecordOptions& options, StreamSet& stream
                           : encode ? StreamKind::kCompressedImage
                                    : StreamKind::kImage;
   const auto stream = streams.add(topic, kind, camera.table->rows().size());
-  if (!stream || !camera.video) return;
-  VideoOfCamera video{std::move(camera.video), camera.table, camera.name + "/video.mp4", camera.name,
-                      *stream};
+  if (!stream) return;
+  const std::string name = camera.name + "/video.mp4";
+  if (!camera.video) {  // as many pictures as timestamps.txt says are missing
+    const std::uint64_t pictures = camera.table->rows().size();
+    parts.log->file(name).rows = pictures;
+    parts.log->skip(name, camera.video_fault, "", pictures);
+    return;
+  }
+  VideoOfCamera video{std::move(camera.video), camera.table, name, camera.name, *stream};
   if (packets) {
     parts.sources.push_back(std::make_unique<PacketSource>(std::move(video), parts.log));
   } else {
@@ -123,6 +132,8 @@ void addBudCamera(const fs::path& record, const std::string& name, const RigFile
     if (fs::is_directory(record / name, error)) parts.log->note(name + ": no timestamps.txt, sensor skipped");
     return;
   }
+  if (!streams.wantsAnyOf(name)) return;
+  const std::size_t sources_before = parts.sources.size();
   Camera camera;
   camera.record = record;
   camera.name = name;
@@ -152,6 +163,7 @@ void addBudCamera(const fs::path& record, const std::string& name, const RigFile
   }
   addPictures(camera, options, streams, parts);
   addDetections(camera, image, streams, parts);
+  if (parts.sources.size() == sources_before) camera.table->accountUnused("nothing of this camera is read");
 }
 
 }  // namespace atlas::record

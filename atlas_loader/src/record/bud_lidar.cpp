@@ -16,14 +16,15 @@ namespace {
 /// aligned.
 class SweepMaker {
  public:
-  SweepMaker(std::string lidar, std::unique_ptr<ScanStore> store, const RecordOptions& options,
-             std::shared_ptr<RecordLog> log)
+  SweepMaker(std::string lidar, std::unique_ptr<ScanStore> store, const FrameTable& table,
+             const RecordOptions& options, std::shared_ptr<RecordLog> log)
       : lidar_(std::move(lidar)), store_(std::move(store)), log_(std::move(log)) {
     const std::string place = store_ ? store_->place() : "scans";
     name_ = lidar_ + "/" + (place.empty() ? "scan*.pcd" : place);
     timing_.stamp_marks = options.scan_stamp;
     timing_.rotating = lidar_ != "lidar_center";
     latency_ = fromSeconds(options.lidar_latency_s);
+    usual_s_ = usualRevolution(intervals(table));
     if (!store_)
       log_->note(lidar_ + ": no scans (neither scan*.pcd nor scans/ nor scans.zip), sweeps are empty");
     if (store_ && !store_->listingError().empty()) log_->note(name_ + ": " + store_->listingError());
@@ -32,6 +33,10 @@ class SweepMaker {
   /// Books the scans that no row of `table` inside `span` asks for.
   void account(const FrameTable& table, const TimeSpan& span) {
     if (!store_) return;
+    if (store_->repeated() > 0) {
+      log_->file(name_).rows += store_->repeated();
+      log_->skip(name_, "scan number repeated", "", store_->repeated());
+    }
     for (const std::uint32_t index : store_->indices()) {
       const FrameRow* row = table.find(index);
       if (row && span.contains(row->stamp)) continue;
@@ -51,9 +56,10 @@ class SweepMaker {
     PcdCloud cloud = parsePcd(scan.bytes);
     if (!cloud.error.empty()) return skip(row, cloud.error, std::move(sweep));
     if (cloud.points.empty()) return skip(row, "scan without points", std::move(sweep));
-    noteLayout(cloud);
-    timing_.duration_s = revolutionDuration(interval(row, previous));
-    *sweep = makeSweep(std::move(cloud), row.stamp, lidar_, timing_);
+    timing_.duration_s = revolutionDuration(previous ? interval(row, *previous) : std::nullopt, usual_s_);
+    MadeSweep made = makeSweep(std::move(cloud), row.stamp, lidar_, timing_);
+    if (!made.remark.empty()) log_->note(name_ + ": " + made.remark);
+    *sweep = std::move(made.sweep);
     ++log_->file(name_).used;
     return SweepPtr(std::move(sweep));
   }
@@ -64,18 +70,23 @@ class SweepMaker {
     return SweepPtr(std::move(empty));
   }
 
-  /// The lidar's own clock has less jitter than the system's, if both rows have it.
-  [[nodiscard]] std::optional<Duration> interval(const FrameRow& row, const FrameRow* previous) const {
-    if (!previous) return std::nullopt;
+  /// The lidar's own clock has less jitter than the system's, if both rows have it. nullopt when a scan
+  /// between the two is missing.
+  [[nodiscard]] std::optional<Duration> interval(const FrameRow& row, const FrameRow& previous) const {
+    if (row.index != previous.index + 1) return std::nullopt;
     const auto now = decodeInnerTime(row.inner, row.stamp + latency_);
-    const auto before = decodeInnerTime(previous->inner, previous->stamp + latency_);
+    const auto before = decodeInnerTime(previous.inner, previous.stamp + latency_);
     if (now && before) return now->time - before->time;
-    return row.stamp - previous->stamp;
+    return row.stamp - previous.stamp;
   }
 
-  void noteLayout(const PcdCloud& cloud) {
-    if (!timing_.rotating || cloud.points.size() % kLasersHdl32 == 0 || !cloud.time_s.empty()) return;
-    log_->note(name_ + ": scans whose size is no multiple of 32: point time linear in file order, ring 0");
+  [[nodiscard]] std::vector<Duration> intervals(const FrameTable& table) const {
+    std::vector<Duration> intervals;
+    for (std::size_t i = 1; i < table.rows().size(); ++i) {
+      const auto duration = interval(table.rows()[i], table.rows()[i - 1]);
+      if (duration) intervals.push_back(*duration);
+    }
+    return intervals;
   }
 
   std::string lidar_, name_;
@@ -83,6 +94,7 @@ class SweepMaker {
   std::shared_ptr<RecordLog> log_;
   SweepTiming timing_;
   Duration latency_ = 0;
+  double usual_s_ = 0.1;  ///< duration of a revolution
 };
 
 /// Summary of the inner clock for the notes.
@@ -132,7 +144,7 @@ void addBudLidar(const std::filesystem::path& record, const std::string& lidar, 
                                             FrameColumns::kInner, latency, parts.log);
   noteInnerClock(*table, latency, *parts.log);
   if (points) {
-    auto maker = std::make_shared<SweepMaker>(lidar, openScanStore(folder), options, parts.log);
+    auto maker = std::make_shared<SweepMaker>(lidar, openScanStore(folder), *table, options, parts.log);
     parts.sources.push_back(std::make_unique<FrameSource>(
         table, *points,
         [maker](const FrameRow& row, const FrameRow* previous) { return maker->make(row, previous); },

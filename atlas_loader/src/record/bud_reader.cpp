@@ -2,9 +2,9 @@
 #include "record/bud_reader.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include "record/bud_camera.hpp"
+#include "record/bud_contents.hpp"
 #include "record/bud_lidar.hpp"
 #include "record/bud_rows.hpp"
 #include "record/gravity_test.hpp"
@@ -13,10 +13,6 @@
 namespace atlas::record {
 namespace {
 namespace fs = std::filesystem;
-
-const char* const kLidars[] = {"lidar_left", "lidar_right", "lidar_center"};
-const char* const kCameras[] = {"camera_left_front", "camera_left_side", "camera_right_front",
-                                "camera_right_side", "camera_ir"};
 
 /// A file that is read for its count only.
 class UnusedRows : public EventSource {
@@ -52,7 +48,7 @@ class Assembly {
     parts_.static_transforms = rig.transforms;
     addImu();
     addGnss();
-    for (const char* lidar : kLidars) addBudLidar(record_, lidar, options_, streams_, parts_);
+    for (const char* lidar : kBudLidars) addBudLidar(record_, lidar, options_, streams_, parts_);
     addRows("radar_ti/scans.txt", {{"radar_ti/scan", StreamKind::kRadar}}, 0, [](const Streams& s) {
       return [s](RowFields& fields, std::vector<Event>& events) {
         RadarScan scan = parseRadar(fields, {});
@@ -62,7 +58,7 @@ class Assembly {
         return stamp;
       };
     });
-    for (const char* camera : kCameras) addBudCamera(record_, camera, rig, options_, streams_, parts_);
+    for (const char* camera : kBudCameras) addBudCamera(record_, camera, rig, options_, streams_, parts_);
     noteUnknown();
     parts_.streams = streams_.streams();
     return std::move(parts_);
@@ -72,22 +68,26 @@ class Assembly {
   using Streams = std::vector<std::optional<std::size_t>>;
 
   RigFiles readCalibration() {
-    fs::path folder = record_ / "calibrations";
-    if (!holdsYaml(folder)) folder = options_.calibration_dir;
-    if (!options_.calibration_dir.empty() && !holdsYaml(record_ / "calibrations") && !holdsYaml(folder))
+    const fs::path of_record = calibrationIn(record_ / "calibrations");
+    const fs::path given =
+        options_.calibration_dir.empty() ? fs::path() : calibrationIn(options_.calibration_dir);
+    if (of_record.empty() && given.empty() && !options_.calibration_dir.empty())
       throw std::invalid_argument("calibration_dir: no *.yaml in '" + options_.calibration_dir + "'");
-    if (folder.empty()) folder = options_.packaged_rig_dir;
-    if (folder.empty() || !holdsYaml(folder)) {
+    const fs::path packaged =
+        options_.packaged_rig_dir.empty() ? fs::path() : calibrationIn(options_.packaged_rig_dir);
+    const fs::path folder = !of_record.empty() ? of_record : !given.empty() ? given : packaged;
+    if (folder.empty()) {
       parts_.log->note("calibration: none found, tf_static has the imu only and there is no camera_info");
       RigFiles none;
       none.transforms.transforms.push_back({"base_link", "imu", Pose{}});
       return none;
     }
     RigFiles rig = readRigFiles(folder);
-    parts_.log->note(folder == record_ / "calibrations"   ? "calibration: of the record"
-                     : folder == options_.calibration_dir ? "calibration: of calibration_dir"
-                                                          : "calibration: packaged rig");
+    parts_.log->note(!of_record.empty() ? "calibration: of the record"
+                     : !given.empty()   ? "calibration: of calibration_dir"
+                                        : "calibration: packaged rig");
     for (const std::string& note : rig.notes) parts_.log->note(note);
+    noteMissingFrames(record_, rig.transforms, *parts_.log);
     return rig;
   }
 
@@ -132,8 +132,6 @@ class Assembly {
       const GravityVerdict verdict = testGravity(record_ / "imu/imu.txt");
       parts_.log->note(describe(verdict));
       rows.invert_acceleration = verdict.sign == GravityVerdict::Sign::kInverted;
-    } else {
-      parts_.log->note("imu/imu.txt: missing");
     }
     auto without_orientation = std::make_shared<std::uint64_t>(0);
     addRows(
@@ -195,18 +193,12 @@ class Assembly {
 
   /// What lies in the record and is not read, and what was asked for and is not there.
   void noteUnknown() {
-    std::set<std::string> known = {"imu", "gnss", "radar_ti", "yolo", "calibrations", "output"};
-    known.insert(std::begin(kLidars), std::end(kLidars));
-    known.insert(std::begin(kCameras), std::end(kCameras));
-    std::set<std::string> found;
+    if (options_.topics.empty()) {
+      noteMissingFiles(record_, *parts_.log);
+      noteUnreadFiles(record_, *parts_.log);
+    }
     std::error_code error;
-    for (fs::directory_iterator it(record_, error), end; !error && it != end; it.increment(error)) {
-      found.insert(it->path().filename().string());
-    }
-    for (const std::string& name : found) {
-      if (known.count(name) == 0) parts_.log->note(name + ": not part of the format, ignored");
-    }
-    for (const char* camera : kCameras) {
+    for (const char* camera : kBudCameras) {
       const std::string name = "yolo/" + std::string(camera) + ".txt";
       if (!options_.topics.empty() || !fs::exists(record_ / name, error)) continue;
       if (fs::exists(record_ / camera / "timestamps.txt", error)) continue;
@@ -233,8 +225,8 @@ bool isBudRecord(const fs::path& folder) {
   const auto has_stamps = [&](const char* sensor) {
     return fs::exists(folder / sensor / "timestamps.txt", error);
   };
-  return std::any_of(std::begin(kLidars), std::end(kLidars), has_stamps) ||
-         std::any_of(std::begin(kCameras), std::end(kCameras), has_stamps);
+  return std::any_of(std::begin(kBudLidars), std::end(kBudLidars), has_stamps) ||
+         std::any_of(std::begin(kBudCameras), std::end(kBudCameras), has_stamps);
 }
 
 std::unique_ptr<RecordReader> openBudRecord(const fs::path& folder, const RecordOptions& options) {

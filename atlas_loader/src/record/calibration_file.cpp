@@ -66,7 +66,8 @@ void readFrames(const fs::path& file, RigFiles& rig) {
   if (!root.IsMap()) fail(file, root.Mark(), "expected one entry per frame");
   std::map<std::string, Pose> poses;
   for (const auto& entry : root) {
-    const auto name = entry.first.as<std::string>();
+    if (!entry.first.IsScalar()) fail(file, entry.first.Mark(), "the name of a frame is not a word");
+    const std::string name = entry.first.Scalar();
     const YAML::Node node = entry.second;
     if (!node.IsMap()) fail(file, node.Mark(), "frame " + name + ": expected trans and rot");
     const auto t = numbers(file, node["trans"], name + ".trans", 3);
@@ -117,7 +118,6 @@ CameraInfo readCamera(const fs::path& file, const std::string& camera) {
   info.P = {k[0], k[1], k[2], 0, k[3], k[4], k[5], 0, k[6], k[7], k[8], 0};
   return info;
 }
-}  // namespace
 
 bool holdsYaml(const fs::path& folder) {
   std::error_code error;
@@ -125,6 +125,17 @@ bool holdsYaml(const fs::path& folder) {
     if (it->path().extension() == ".yaml") return true;
   }
   return false;
+}
+}  // namespace
+
+fs::path calibrationIn(const fs::path& folder) {
+  if (holdsYaml(folder)) return folder;
+  std::vector<fs::path> below;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->is_directory(error) && holdsYaml(it->path())) below.push_back(it->path());
+  }
+  return below.empty() ? fs::path() : *std::min_element(below.begin(), below.end());
 }
 
 RigFiles readRigFiles(const fs::path& folder) {

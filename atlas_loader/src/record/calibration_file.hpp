@@ -22,7 +22,8 @@ struct RigFiles {
 
 /// Reads what is there; no file is mandatory. Throws std::runtime_error naming file, line, field and value.
 RigFiles readRigFiles(const std::filesystem::path& folder);
-/// True when the folder has a *.yaml file.
-bool holdsYaml(const std::filesystem::path& folder);
+/// The folder itself when it has a *.yaml file, else the first one of such below it (the dataset's clone.sh
+/// clones the calibration repository into calibrations/); empty when there is none.
+std::filesystem::path calibrationIn(const std::filesystem::path& folder);
 
 }  // namespace atlas::record

@@ -55,12 +55,11 @@ Detection2d parseDetection(RowFields& fields, DetectionLayout layout, const Imag
   return box;
 }
 
-DetectionFile::DetectionFile(const std::filesystem::path& path, std::string name, ImageSize size,
-                             std::shared_ptr<RecordLog> log)
-    : lines_(path), fields_(name, ','), name_(std::move(name)), size_(size), log_(std::move(log)) {
+/// The layout that most rows have.
+DetectionLayout DetectionFile::findLayout(const std::filesystem::path& path) {
   std::uint64_t eight = 0, seven = 0, pixels = 0;
-  LineReader first(path);
-  while (const auto line = first.next()) {
+  LineReader lines(path);
+  while (const auto line = lines.next()) {
     if (isBlank(line->text)) continue;
     fields_.assign(*line);
     eight += fields_.size() == 8 ? 1 : 0;
@@ -68,16 +67,27 @@ DetectionFile::DetectionFile(const std::filesystem::path& path, std::string name
     ++seven;
     pixels += looksLikePixels(fields_) ? 1 : 0;
   }
+  if (eight + seven == 0) return DetectionLayout::kCenter;
   if (eight > seven) {
-    layout_ = DetectionLayout::kTopLeft;
-  } else {
-    layout_ = 2 * pixels > seven ? DetectionLayout::kCorners : DetectionLayout::kCenter;
+    log_->note(name_ + ": layout of 8 columns, boxes by their top-left corner");
+    return DetectionLayout::kTopLeft;
   }
+  const bool corners = 2 * pixels > seven;
+  log_->note(name_ + (corners ? ": layout of 7 columns in pixels, boxes by two corners"
+                              : ": layout of 7 columns, boxes by their centre"));
+  return corners ? DetectionLayout::kCorners : DetectionLayout::kCenter;
+}
+
+DetectionFile::DetectionFile(const std::filesystem::path& path, std::string name, ImageSize size,
+                             std::shared_ptr<RecordLog> log)
+    : lines_(path), fields_(name, ','), name_(std::move(name)), size_(size), log_(std::move(log)) {
+  layout_ = findLayout(path);
   index();
 }
 
 void DetectionFile::index() {
   log_->file(name_);
+  if (!lines_.opened()) log_->note(name_ + ": cannot be opened");
   bool sorted = true;
   const bool size_known = layout_ == DetectionLayout::kCorners || (size_.width > 0 && size_.height > 0);
   if (!size_known) log_->note(name_ + ": image size unknown, normalized boxes cannot be converted to pixels");

@@ -38,6 +38,7 @@ class DetectionFile {
     std::uint32_t frame;
     std::uint32_t line;
   };
+  DetectionLayout findLayout(const std::filesystem::path& path);
   void index();
 
   LineReader lines_;

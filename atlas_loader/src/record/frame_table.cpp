@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "record/stamp_outlier.hpp"
+
 namespace atlas::record {
 
 FrameTable::FrameTable(const std::filesystem::path& path, const std::string& name, FrameColumns columns,
@@ -13,6 +15,8 @@ FrameTable::FrameTable(const std::filesystem::path& path, const std::string& nam
   log_->file(name_);
   if (!lines.opened()) log_->note(name_ + ": cannot be opened");
   read(lines, columns, latency);
+  dropOutliers();
+  dropRepeated();
   if (lines.opened() && rows_.empty()) log_->note(name_ + ": no usable rows");
   sortRows();
 }
@@ -29,6 +33,7 @@ void FrameTable::read(LineReader& lines, FrameColumns columns, Duration latency)
     ++log_->file(name_).rows;
     fields.assign(*line);
     FrameRow row;
+    row.line = static_cast<std::uint32_t>(line->number);
     if (columns == FrameColumns::kTemperatures) {
       fields.expect(4);
       row.minimum_degc = fields.number(2, "t_min");
@@ -48,17 +53,40 @@ void FrameTable::read(LineReader& lines, FrameColumns columns, Duration latency)
   }
 }
 
-void FrameTable::sortRows() {
-  // The first row of an index counts; a second one is a fault of the file.
+void FrameTable::dropOutliers() {
+  std::vector<Stamp> stamps;
+  for (const FrameRow& row : rows_) stamps.push_back(row.stamp);
+  const auto typical = typicalStamp(std::move(stamps));
+  const auto gone = std::stable_partition(
+      rows_.begin(), rows_.end(), [&](const FrameRow& row) { return !isOutlier(row.stamp, typical); });
+  for (auto row = gone; row != rows_.end(); ++row) {
+    log_->skip(name_, kOutlier,
+               name_ + ":" + std::to_string(row->line) + ": field 1 (stamp): far from the others: '" +
+                   std::to_string(row->stamp) + "'");
+  }
+  rows_.erase(gone, rows_.end());
+}
+
+/// The first row of an index counts; a second one is a fault of the file.
+void FrameTable::dropRepeated() {
   std::stable_sort(rows_.begin(), rows_.end(),
                    [](const FrameRow& a, const FrameRow& b) { return a.index < b.index; });
-  const auto same = [](const FrameRow& a, const FrameRow& b) { return a.index == b.index; };
-  const auto unique_end = std::unique(rows_.begin(), rows_.end(), same);
-  if (unique_end != rows_.end()) {
-    log_->skip(name_, "frame index repeated", "", static_cast<std::uint64_t>(rows_.end() - unique_end));
+  std::vector<FrameRow> kept;
+  kept.reserve(rows_.size());
+  for (const FrameRow& row : rows_) {
+    if (kept.empty() || kept.back().index != row.index) {
+      kept.push_back(row);
+      continue;
+    }
+    log_->skip(name_, "frame index repeated",
+               name_ + ":" + std::to_string(row.line) + ": field 2 (index): repeated: '" +
+                   std::to_string(row.index) + "'");
   }
-  rows_.erase(unique_end, rows_.end());
+  rows_ = std::move(kept);
+}
 
+/// From the order of indices to the order of stamps.
+void FrameTable::sortRows() {
   std::vector<std::uint32_t> place(rows_.size());
   for (std::uint32_t i = 0; i < place.size(); ++i) place[i] = i;
   std::sort(place.begin(), place.end(), [this](std::uint32_t a, std::uint32_t b) {
@@ -75,12 +103,16 @@ void FrameTable::sortRows() {
     sorted.push_back(rows_[place[i]]);
   }
   rows_ = std::move(sorted);
-  place_of_index_.clear();
-  for (std::uint32_t i = 0; i < rows_.size(); ++i) place_of_index_.emplace_back(rows_[i].index, i);
-  std::sort(place_of_index_.begin(), place_of_index_.end());
+  indexRows();
   if (moved > 0) {
     log_->note(name_ + ": " + std::to_string(moved) + " rows out of order, sorted by stamp");
   }
+}
+
+void FrameTable::indexRows() {
+  place_of_index_.clear();
+  for (std::uint32_t i = 0; i < rows_.size(); ++i) place_of_index_.emplace_back(rows_[i].index, i);
+  std::sort(place_of_index_.begin(), place_of_index_.end());
 }
 
 const FrameRow* FrameTable::find(std::uint64_t index) const {
@@ -95,9 +127,7 @@ void FrameTable::limitFrames(std::uint64_t frames) {
                                    [frames](const FrameRow& row) { return row.index >= frames; });
   without_frame_ += static_cast<std::uint64_t>(rows_.end() - gone);
   rows_.erase(gone, rows_.end());
-  place_of_index_.clear();
-  for (std::uint32_t i = 0; i < rows_.size(); ++i) place_of_index_.emplace_back(rows_[i].index, i);
-  std::sort(place_of_index_.begin(), place_of_index_.end());
+  indexRows();
 }
 
 void FrameTable::account(const TimeSpan& span) {
@@ -108,6 +138,12 @@ void FrameTable::account(const TimeSpan& span) {
   log_->file(name_).used += inside;
   log_->skip(name_, kOutsideSpan, "", rows_.size() - inside);
   log_->skip(name_, "the video has no such frame", "", without_frame_);
+}
+
+void FrameTable::accountUnused(const std::string& reason) {
+  if (accounted_) return;
+  accounted_ = true;
+  log_->skip(name_, reason, "", rows_.size() + without_frame_);
 }
 
 FrameSource::FrameSource(std::shared_ptr<FrameTable> table, std::size_t stream, Make make, Limit on_limit)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// timestamps.txt of a camera or lidar: which stamp belongs to frame k. Kept whole (40 bytes a frame);
+// timestamps.txt of a camera or lidar: which stamp belongs to frame k. Kept whole (48 bytes a frame);
 // payloads never are.
 #pragma once
 
@@ -17,6 +17,7 @@ namespace atlas::record {
 struct FrameRow {
   Stamp stamp = 0;
   std::uint32_t index = 0;                    ///< 0-based frame or scan number
+  std::uint32_t line = 0;                     ///< of the file, for messages
   std::uint64_t inner = 0;                    ///< clock of the sensor as written; 0 when the file has none
   double minimum_degc = 0, maximum_degc = 0;  ///< thermal camera only
 };
@@ -32,13 +33,16 @@ class FrameTable {
   FrameTable(const std::filesystem::path& path, const std::string& name, FrameColumns columns,
              Duration latency, std::shared_ptr<RecordLog> log);
 
-  /// From rows that the caller has read and counted; `name` "" = account() books nothing.
+  /// From rows by ascending index that the caller has read, checked and counted; `name` "" = account() books
+  /// nothing.
   FrameTable(std::vector<FrameRow> rows, const std::string& name, std::shared_ptr<RecordLog> log);
 
   /// Only frames with index < `frames` exist; to be called before account().
   void limitFrames(std::uint64_t frames);
   /// Books every row as used, without a picture, or outside of `span`. Later calls do nothing.
   void account(const TimeSpan& span);
+  /// Books every row as skipped, when no stream is made of it.
+  void accountUnused(const std::string& reason);
 
   /// Existing frames by (stamp, index).
   [[nodiscard]] const std::vector<FrameRow>& rows() const { return rows_; }
@@ -50,7 +54,10 @@ class FrameTable {
 
  private:
   void read(LineReader& lines, FrameColumns columns, Duration latency);
+  void dropOutliers();
+  void dropRepeated();
   void sortRows();
+  void indexRows();
 
   std::string name_;
   std::shared_ptr<RecordLog> log_;

@@ -11,15 +11,17 @@ namespace atlas::record {
 GravityVerdict testGravity(const std::filesystem::path& imu_file, std::size_t max_samples) {
   LineReader lines(imu_file);
   RowFields fields("imu/imu.txt", ',');
-  std::vector<double> up;
-  while (up.size() < max_samples) {
+  std::vector<double> up, along_z;
+  while (up.size() + along_z.size() < max_samples) {
     const auto line = lines.next();
     if (!line) break;
     fields.assign(*line);
     const ImuSample sample = parseImu(fields, BudRowOptions{});
-    if (!fields.ok() || !sample.orientation) continue;
-    up.push_back((*sample.orientation * sample.linear_acceleration_mps2).z());
+    if (!fields.ok()) continue;
+    if (sample.orientation) up.push_back((*sample.orientation * sample.linear_acceleration_mps2).z());
+    if (!sample.orientation) along_z.push_back(sample.linear_acceleration_mps2.z());
   }
+  if (up.empty()) up = std::move(along_z);
   GravityVerdict verdict;
   verdict.samples = up.size();
   if (up.empty()) return verdict;

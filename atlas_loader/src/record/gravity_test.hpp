@@ -17,7 +17,8 @@ struct GravityVerdict {
 };
 
 /// Looks at the first `max_samples` good rows of imu/imu.txt (1 min at 400 Hz). Driving averages out in the
-/// median: the sign is decided when |median| > g/2.
+/// median: the sign is decided when |median| > g/2. A file without any usable orientation is judged by its z
+/// axis, as the IMU is mounted level.
 GravityVerdict testGravity(const std::filesystem::path& imu_file, std::size_t max_samples = 24000);
 
 /// For the notes of the reader.

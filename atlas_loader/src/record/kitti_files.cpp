@@ -73,9 +73,9 @@ KittiFiles findKittiFiles(const fs::path& folder, const std::string& calibration
   return found;
 }
 
-std::map<std::uint32_t, fs::path> kittiFrames(const fs::path& folder,
-                                              const std::vector<std::string>& extensions) {
-  std::map<std::uint32_t, fs::path> files;
+std::map<std::uint32_t, std::vector<fs::path>> kittiFrameFiles(const fs::path& folder,
+                                                               const std::vector<std::string>& extensions) {
+  std::map<std::uint32_t, std::vector<fs::path>> files;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const fs::path& path = it->path();
@@ -83,11 +83,9 @@ std::map<std::uint32_t, fs::path> kittiFrames(const fs::path& folder,
       continue;
     const auto index = toUnsigned(path.stem().string());
     if (!index || *index > 0x7fffffff) continue;
-    const auto [place, first] = files.emplace(static_cast<std::uint32_t>(*index), path);
-    if (!first)
-      place->second =
-          std::min(place->second, path);  // the same frame as png and jpg: whatever the disk's order
+    files[static_cast<std::uint32_t>(*index)].push_back(path);
   }
+  for (auto& [index, paths] : files) std::sort(paths.begin(), paths.end());  // whatever the disk's order
   return files;
 }
 
@@ -124,7 +122,11 @@ std::shared_ptr<Image> kittiImage(const std::string& bytes, bool decode) {
     return image;
   }
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
-  image->pixels = cv::imdecode(raw, cv::IMREAD_COLOR);
+  try {
+    image->pixels = cv::imdecode(raw, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {  // a size in the header that is beyond all limits
+    return nullptr;
+  }
   image->format = "bgr8";
   return image->pixels.empty() ? nullptr : image;
 }

@@ -28,9 +28,10 @@ struct KittiFiles {
 /// sensor is there twice (several drives).
 KittiFiles findKittiFiles(const std::filesystem::path& folder, const std::string& calibration_dir);
 
-/// "0000000012.png" -> 12, for the given extensions.
-std::map<std::uint32_t, std::filesystem::path> kittiFrames(const std::filesystem::path& folder,
-                                                           const std::vector<std::string>& extensions);
+/// "0000000012.png" -> 12, for the given extensions; the paths of a number are sorted (png and jpg of one
+/// frame).
+std::map<std::uint32_t, std::vector<std::filesystem::path>> kittiFrameFiles(
+    const std::filesystem::path& folder, const std::vector<std::string>& extensions);
 /// Number with ten digits and the extension.
 std::string kittiFileName(std::uint32_t index, const std::string& extension);
 std::optional<std::string> readWholeFile(const std::filesystem::path& path);

@@ -1,139 +1,67 @@
 // SPDX-License-Identifier: MIT
 #include "record/kitti_reader.hpp"
 
-#include <algorithm>
-#include <fstream>
-#include <map>
-#include <opencv2/imgcodecs.hpp>
-#include <set>
-#include <stdexcept>
-
 #include "record/frame_table.hpp"
 #include "record/kitti_calibration.hpp"
 #include "record/kitti_files.hpp"
-#include "record/kitti_rows.hpp"
+#include "record/kitti_frames.hpp"
+#include "record/kitti_oxts.hpp"
 #include "record/kitti_sweep.hpp"
+#include "record/kitti_times.hpp"
 #include "record/merged_reader.hpp"
 
 namespace atlas::record {
 namespace {
 namespace fs = std::filesystem;
+constexpr const char* kVelodyne = "velodyne_points";
 
-/// The frame time of a sensor without timestamps: drive_0057, whose Velodyne stamps are known, has its OXTS
-/// stamps 11.7 .. 25.0 ms (mean 17.2 ms) after the moment at which the lidar looks forward and the cameras
-/// are triggered.
-constexpr Duration kOxtsDelay = 17 * kMillisecond;
+/// Makes the sweep of a row. A frame that is missing or damaged gives an empty sweep, so that indices stay
+/// aligned.
+Payload makeSweep(const FrameRow& row, const KittiFrames& frames, const KittiSpin& spin) {
+  auto sweep = std::make_shared<Sweep>();
+  sweep->frame = "velodyne";
+  if (const auto bytes = frames.read(row.index)) {
+    auto parsed = parseKittiSweep(*bytes, spin);
+    if (parsed) {
+      *sweep = std::move(*parsed);
+      frames.bookUsed();
+    } else {
+      frames.bookSkipped(row.index, "not a whole number of points of 16 bytes",
+                         std::to_string(bytes->size()) + " bytes");
+    }
+  }
+  sweep->stamp = row.stamp;
+  return SweepPtr(std::move(sweep));
+}
 
-/// imu/data, gnss/fix and gnss/heading from one file per frame.
-class OxtsSource : public EventSource {
- public:
-  struct Streams {
-    std::optional<std::size_t> imu, fix, heading;
-  };
-  OxtsSource(std::map<std::uint32_t, Stamp> stamps, std::map<std::uint32_t, fs::path> files, Streams streams,
-             const RecordOptions& options, std::shared_ptr<RecordLog> log)
-      : files_(std::move(files)), streams_(streams), log_(std::move(log)), fields_("oxts/data", ' ') {
-    const auto latency = [](double seconds) { return fromSeconds(seconds); };
-    imu_latency_ = latency(options.imu_latency_s);
-    gnss_latency_ = latency(options.gnss_latency_s);
-    for (const auto& [index, stamp] : stamps) order_.emplace_back(stamp, index);
-    std::sort(order_.begin(), order_.end());
+/// nullopt, and booked why, when there is no whole picture.
+std::optional<Payload> makePicture(const FrameRow& row, const KittiFrames& frames, bool pixels) {
+  const auto bytes = frames.read(row.index);
+  if (!bytes) return std::nullopt;
+  auto image = kittiImage(*bytes, pixels);
+  if (!image) {
+    frames.bookSkipped(row.index, "picture damaged", "no whole PNG or JPEG");
+    return std::nullopt;
   }
-  std::optional<Stamp> firstStamp() override {
-    if (order_.empty()) return std::nullopt;
-    return order_.front().first - std::max(imu_latency_, gnss_latency_);
-  }
-  std::optional<Stamp> lastStamp() override {
-    if (order_.empty()) return std::nullopt;
-    return order_.back().first - std::min(imu_latency_, gnss_latency_);
-  }
-  void limit(const TimeSpan& span) override {
-    span_ = span;
-    std::set<std::uint32_t> stamped;
-    for (const auto& [stamp, index] : order_) stamped.insert(index);
-    for (const auto& [index, path] : files_) {
-      if (stamped.count(index) > 0) continue;
-      ++log_->file("oxts/data").rows;
-      log_->skip("oxts/data", "no row in timestamps.txt",
-                 "oxts/data/" + path.filename().string() + ": no stamp");
-    }
-  }
-  std::optional<Event> next() override {
-    // Latencies shift the streams against each other: read ahead until nothing earlier can come.
-    const Duration spread = std::max(imu_latency_, gnss_latency_) - std::min(imu_latency_, gnss_latency_);
-    while (next_ < order_.size() &&
-           (ready_.empty() || order_[next_].first - std::max(imu_latency_, gnss_latency_) <=
-                                  ready_.begin()->first.first + spread)) {
-      read(order_[next_].first, order_[next_].second);
-      ++next_;
-    }
-    if (ready_.empty()) return std::nullopt;
-    Event event = std::move(ready_.extract(ready_.begin()).mapped());
-    return event;
-  }
-
- private:
-  void read(Stamp stamp, std::uint32_t index) {
-    FileReport& data = log_->file("oxts/data");
-    ++data.rows;
-    const bool inside = span_.contains(stamp - imu_latency_) || span_.contains(stamp - gnss_latency_);
-    if (!inside) {
-      log_->skip("oxts/timestamps.txt", kOutsideSpan);
-      log_->skip("oxts/data", kOutsideSpan);
-      return;
-    }
-    ++log_->file("oxts/timestamps.txt").used;
-    const std::string name = "oxts/data/" + kittiFileName(index, ".txt");
-    const auto file = files_.find(index);
-    LineReader lines(file == files_.end() ? fs::path() : file->second);
-    const auto line = lines.next();
-    if (!line) {
-      log_->skip("oxts/data", file == files_.end() ? "file missing" : "file empty or unreadable",
-                 name + ": missing");
-      return;
-    }
-    fields_ = RowFields(name, ' ');
-    fields_.assign(*line);
-    OxtsSample sample = parseOxts(fields_, stamp);
-    if (!fields_.ok()) {
-      log_->skip("oxts/data", fields_.reason(), fields_.example());
-      return;
-    }
-    ++data.used;
-    sample.imu.stamp = stamp - imu_latency_;
-    sample.fix.stamp = sample.heading.stamp = stamp - gnss_latency_;
-    add(streams_.imu, sample.imu.stamp, sample.imu);
-    add(streams_.fix, sample.fix.stamp, sample.fix);
-    add(streams_.heading, sample.heading.stamp, sample.heading);
-  }
-  void add(const std::optional<std::size_t>& stream, Stamp stamp, Payload payload) {
-    if (!stream || !span_.contains(stamp)) return;
-    ready_.emplace(std::make_pair(stamp, *stream), Event{stamp, *stream, std::move(payload)});
-  }
-
-  std::map<std::uint32_t, fs::path> files_;
-  Streams streams_;
-  std::shared_ptr<RecordLog> log_;
-  RowFields fields_;
-  Duration imu_latency_ = 0, gnss_latency_ = 0;
-  std::vector<std::pair<Stamp, std::uint32_t>> order_;
-  TimeSpan span_;
-  std::multimap<std::pair<Stamp, std::size_t>, Event> ready_;
-  std::size_t next_ = 0;
-};
+  image->stamp = row.stamp;
+  image->frame = frames.sensor();
+  frames.bookUsed();
+  return ImagePtr(std::move(image));
+}
 
 class Assembly {
  public:
   Assembly(const fs::path& record, const RecordOptions& options)
-      : options_(options), streams_(options.topics), files_(findKittiFiles(record, options.calibration_dir)) {
-    parts_.log = std::make_shared<RecordLog>();
-  }
+      : options_(options),
+        streams_(options.topics),
+        files_(findKittiFiles(record, options.calibration_dir)) {}
 
   RecordParts build() {
     readCalibration();
     addOxts();
     addVelodyne();
     for (const char* camera : {"image_02", "image_03"}) addCamera(camera);
+    times_.book();
     for (const std::string& note : files_.notes) log().note(note);
     for (const std::string& topic : streams_.unknown()) {
       log().note("topic '" + topic + "' was asked for, the record has none of this name");
@@ -162,124 +90,64 @@ class Assembly {
       log().note("oxts: missing, no imu and no gnss");
       return;
     }
-    oxts_stamps_ = readKittiStamps(folder / "timestamps.txt", "oxts/timestamps.txt", log());
-    if (oxts_stamps_.empty()) log().note("oxts/timestamps.txt: no usable rows");
-    const auto rows = static_cast<std::uint64_t>(oxts_stamps_.size());
+    const bool wanted =
+        streams_.wants("imu/data") || streams_.wants("gnss/fix") || streams_.wants("gnss/heading");
+    const std::uint64_t rows = wanted ? times_.read("oxts").size() : 0;
     OxtsSource::Streams streams;
     streams.imu = streams_.add("imu/data", StreamKind::kImu, rows);
     streams.fix = streams_.add("gnss/fix", StreamKind::kGnssFix, rows);
     streams.heading = streams_.add("gnss/heading", StreamKind::kGnssHeading, rows);
-    if (!streams.imu && !streams.fix && !streams.heading) return;
-    parts_.sources.push_back(std::make_unique<OxtsSource>(
-        oxts_stamps_, kittiFrames(folder / "data", {".txt"}), streams, options_, parts_.log));
+    if (!wanted) return;
+    times_.leaveToCaller("oxts");
+    parts_.sources.push_back(std::make_unique<OxtsSource>(times_.read("oxts"),
+                                                          KittiFrames("oxts", folder, {".txt"}, parts_.log),
+                                                          streams, options_, parts_.log));
   }
 
-  /// Frame times of a sensor: its own timestamps.txt, else from OXTS for the files that are there.
-  std::map<std::uint32_t, Stamp> frameTimes(const std::string& sensor,
-                                            const std::map<std::uint32_t, fs::path>& files, bool& own) {
-    const fs::path path = files_.sensor(sensor) / "timestamps.txt";
-    std::error_code error;
-    own = fs::exists(path, error);
-    if (own) return readKittiStamps(path, sensor + "/timestamps.txt", log());
-    std::map<std::uint32_t, Stamp> times;
-    for (const auto& [index, file] : files) {
-      const auto velodyne = velodyne_times_.find(index);
-      const auto oxts = oxts_stamps_.find(index);
-      if (velodyne != velodyne_times_.end()) {
-        times[index] = velodyne->second;
-      } else if (oxts != oxts_stamps_.end()) {
-        times[index] = oxts->second - kOxtsDelay;
-      }
-    }
-    if (!times.empty())
-      log().note(sensor + ": no timestamps.txt, times from those of the lidar or of OXTS - 17 ms");
-    return times;
-  }
-
-  void bookStampless(const std::string& sensor, const std::map<std::uint32_t, fs::path>& files,
-                     const std::map<std::uint32_t, Stamp>& times) {
-    const std::string name = sensor + "/data";
-    for (const auto& [index, path] : files) {
-      if (times.count(index) > 0) continue;
-      ++log().file(name).rows;
-      log().skip(name, "no stamp for this frame", name + "/" + path.filename().string() + ": no stamp");
-    }
-  }
-
-  std::shared_ptr<FrameTable> makeTable(const std::string& sensor,
-                                        const std::map<std::uint32_t, Stamp>& times, bool own,
-                                        Duration latency) {
+  static std::shared_ptr<FrameTable> makeTable(const KittiStamps& stamps, const std::string& file,
+                                               Duration latency, const std::shared_ptr<RecordLog>& log) {
     std::vector<FrameRow> rows;
-    for (const auto& [index, stamp] : times) {
+    for (const auto& [index, stamp] : stamps) {
       FrameRow row;
       row.stamp = stamp - latency;
       row.index = index;
       rows.push_back(row);
     }
-    return std::make_shared<FrameTable>(std::move(rows), own ? sensor + "/timestamps.txt" : "", parts_.log);
-  }
-
-  /// Reads the frame's file; what went wrong is booked under <sensor>/data.
-  static std::optional<std::string> readFrame(const std::map<std::uint32_t, fs::path>& files,
-                                              const FrameRow& row, const std::string& sensor,
-                                              RecordLog& log) {
-    const std::string name = sensor + "/data";
-    ++log.file(name).rows;
-    const auto it = files.find(row.index);
-    auto bytes = it == files.end() ? std::nullopt : readWholeFile(it->second);
-    if (bytes) return bytes;
-    log.skip(name, it == files.end() ? "file missing" : "file unreadable",
-             name + "/" + kittiFileName(row.index, "") + ": missing or unreadable");
-    return std::nullopt;
+    return std::make_shared<FrameTable>(std::move(rows), file, log);
   }
 
   void addVelodyne() {
-    const std::string sensor = "velodyne_points";
-    const fs::path folder = files_.sensor(sensor);
-    if (folder.empty()) return;
-    auto files = kittiFrames(folder / "data", {".bin"});
-    bool own = false;
-    const auto forward = frameTimes(sensor, files, own);
-    velodyne_times_ = forward;
-    bookStampless(sensor, files, forward);
-    auto spins = readSpins(folder, forward);
-    std::map<std::uint32_t, Stamp> ends;
+    const fs::path folder = files_.sensor(kVelodyne);
+    if (folder.empty()) {
+      log().note("velodyne_points: missing, no lidar");
+      return;
+    }
+    if (!streams_.wants("velodyne/points")) {
+      streams_.add("velodyne/points", StreamKind::kPoints);
+      return;
+    }
+    auto frames =
+        std::make_shared<KittiFrames>(kVelodyne, folder, std::vector<std::string>{".bin"}, parts_.log);
+    const KittiTimes::Frames times = times_.of(kVelodyne, frames->indices());
+    frames->bookStampless(times.stamps);
+    auto spins = readSpins(times.stamps);
+    KittiStamps ends;
     for (const auto& [index, spin] : spins) ends[index] = spin.end();
+    const auto table = makeTable(ends, times.file, fromSeconds(options_.lidar_latency_s), parts_.log);
     const auto stream = streams_.add("velodyne/points", StreamKind::kPoints, ends.size());
-    if (!stream) return;
-    const Duration latency = fromSeconds(options_.lidar_latency_s);
-    const auto table = makeTable(sensor, ends, own, latency);
-    const auto make = [files = std::move(files), spins = std::move(spins), log = parts_.log, sensor](
-                          const FrameRow& row, const FrameRow*) -> std::optional<Payload> {
-      auto sweep = std::make_shared<Sweep>();
-      sweep->frame = "velodyne";
-      if (const auto bytes = readFrame(files, row, sensor, *log)) {
-        auto parsed = parseKittiSweep(*bytes, spins.at(row.index));
-        if (parsed) {
-          *sweep = std::move(*parsed);
-          ++log->file(sensor + "/data").used;
-        } else {
-          log->skip(sensor + "/data", "not a whole number of points of 16 bytes",
-                    sensor + "/data/" + kittiFileName(row.index, ".bin") + ": " +
-                        std::to_string(bytes->size()) + " bytes");
-        }
-      }
-      sweep->stamp = row.stamp;
-      return SweepPtr(std::move(sweep));
+    const auto make = [frames, spins = std::move(spins)](const FrameRow& row, const FrameRow*) {
+      return makeSweep(row, *frames, spins.at(row.index));
     };
-    parts_.sources.push_back(std::make_unique<FrameSource>(table, *stream, make, bookOutside(sensor, table)));
+    parts_.sources.push_back(std::make_unique<FrameSource>(
+        table, *stream, make, [frames, table](const TimeSpan& span) { frames->bookOutside(*table, span); }));
   }
 
   /// With timestamps_start.txt and timestamps_end.txt the period is measured, else it is the sensor's usual
   /// one.
-  std::map<std::uint32_t, KittiSpin> readSpins(const fs::path& folder,
-                                               const std::map<std::uint32_t, Stamp>& forward) {
+  std::map<std::uint32_t, KittiSpin> readSpins(const KittiStamps& forward) {
     std::map<std::uint32_t, KittiSpin> spins;
-    const std::string name = "velodyne_points/timestamps_";
-    const auto starts = readKittiStamps(folder / "timestamps_start.txt", name + "start.txt", log());
-    const auto ends = readKittiStamps(folder / "timestamps_end.txt", name + "end.txt", log());
-    if (!starts.empty()) log().file(name + "start.txt").used = starts.size();
-    if (!ends.empty()) log().file(name + "end.txt").used = ends.size();
+    const KittiStamps& starts = times_.read(kVelodyne, "timestamps_start.txt");
+    const KittiStamps& ends = times_.read(kVelodyne, "timestamps_end.txt");
     for (const auto& [index, stamp] : forward) {
       KittiSpin spin;
       spin.forward = stamp;
@@ -293,90 +161,72 @@ class Assembly {
     return spins;
   }
 
-  FrameSource::Limit bookOutside(const std::string& sensor, const std::shared_ptr<FrameTable>& table) {
-    return [sensor, table, log = parts_.log](const TimeSpan& span) {
-      for (const FrameRow& row : table->rows()) {
-        if (span.contains(row.stamp)) continue;
-        ++log->file(sensor + "/data").rows;
-        log->skip(sensor + "/data", kOutsideSpan);
-      }
-    };
-  }
-
   void addCamera(const std::string& camera) {
     const fs::path folder = files_.sensor(camera);
     if (folder.empty()) return;
-    auto files = kittiFrames(folder / "data", {".png", ".jpg", ".jpeg"});
-    bool own = false;
-    const auto times = frameTimes(camera, files, own);
-    bookStampless(camera, files, times);
-    const auto table = makeTable(camera, times, own, 0);
-    const auto info = calibration_.cameras.find(camera);
-    if (info == calibration_.cameras.end()) {
-      log().note(camera + ": no calibration, no camera_info");
-    } else {
-      noteSize(camera, files, info->second);
-      const auto stream = streams_.add(camera + "/camera_info", StreamKind::kCameraInfo, times.size());
-      const auto make = [camera_info = info->second, indices = indicesOf(files)](
-                            const FrameRow& row, const FrameRow*) -> std::optional<Payload> {
-        if (indices.count(row.index) == 0) return std::nullopt;
-        CameraInfo stamped = camera_info;
-        stamped.stamp = row.stamp;
-        return stamped;
-      };
-      if (stream) parts_.sources.push_back(std::make_unique<FrameSource>(table, *stream, make));
-    }
-    addPictures(camera, std::move(files), table);
-  }
-
-  static std::set<std::uint32_t> indicesOf(const std::map<std::uint32_t, fs::path>& files) {
-    std::set<std::uint32_t> indices;
-    for (const auto& [index, path] : files) indices.insert(index);
-    return indices;
-  }
-
-  void noteSize(const std::string& camera, const std::map<std::uint32_t, fs::path>& files,
-                const CameraInfo& info) {
-    if (files.empty()) return;
-    const cv::Mat first = cv::imread(files.begin()->second.string(), cv::IMREAD_UNCHANGED);
-    if (first.empty()) return;
-    if (first.cols == static_cast<int>(info.width) && first.rows == static_cast<int>(info.height)) return;
-    log().note(camera + ": pictures are " + std::to_string(first.cols) + "x" + std::to_string(first.rows) +
-               ", calibration is for " + std::to_string(info.width) + "x" + std::to_string(info.height) +
-               ", camera_info is not scaled");
-  }
-
-  void addPictures(const std::string& camera, std::map<std::uint32_t, fs::path> files,
-                   const std::shared_ptr<FrameTable>& table) {
     const bool pixels = options_.images == RecordOptions::Images::kPixels;
-    const auto stream =
-        streams_.add(camera + (pixels ? "/image_raw" : "/image_raw/compressed"),
-                     pixels ? StreamKind::kImage : StreamKind::kCompressedImage, table->rows().size());
-    if (!stream) return;
-    const auto make = [files = std::move(files), log = parts_.log, camera, pixels](
-                          const FrameRow& row, const FrameRow*) -> std::optional<Payload> {
-      const auto bytes = readFrame(files, row, camera, *log);
-      if (!bytes) return std::nullopt;
-      auto image = kittiImage(*bytes, pixels);
-      if (!image) {
-        log->skip(camera + "/data", "picture damaged",
-                  camera + "/data/" + files.at(row.index).filename().string() + ": no whole PNG or JPEG");
-        return std::nullopt;
-      }
-      image->stamp = row.stamp;
-      image->frame = camera;
-      ++log->file(camera + "/data").used;
-      return ImagePtr(std::move(image));
+    const std::string pictures = camera + (pixels ? "/image_raw" : "/image_raw/compressed");
+    const StreamKind kind = pixels ? StreamKind::kImage : StreamKind::kCompressedImage;
+    const auto info = calibration_.cameras.find(camera);
+    if (info == calibration_.cameras.end()) log().note(camera + ": no calibration, no camera_info");
+    if (!streams_.wants(camera + "/camera_info") && !streams_.wants(pictures)) {
+      if (info != calibration_.cameras.end()) streams_.add(camera + "/camera_info", StreamKind::kCameraInfo);
+      streams_.add(pictures, kind);
+      return;
+    }
+    const auto frames = std::make_shared<KittiFrames>(
+        camera, folder, std::vector<std::string>{".png", ".jpg", ".jpeg"}, parts_.log);
+    const KittiTimes::Frames times = times_.of(camera, frames->indices());
+    const auto table = makeTable(times.stamps, times.file, 0, parts_.log);
+    std::size_t sources = 0;
+    if (info != calibration_.cameras.end()) sources += addInfo(info->second, frames, table) ? 1 : 0;
+    if (const auto stream = streams_.add(pictures, kind, table->rows().size())) {
+      frames->bookStampless(times.stamps);
+      const auto make = [frames, pixels](const FrameRow& row, const FrameRow*) {
+        return makePicture(row, *frames, pixels);
+      };
+      parts_.sources.push_back(std::make_unique<FrameSource>(
+          table, *stream, make,
+          [frames, table](const TimeSpan& span) { frames->bookOutside(*table, span); }));
+      ++sources;
+    }
+    if (sources == 0) table->accountUnused("nothing of this camera is read");
+  }
+
+  bool addInfo(const CameraInfo& info, const std::shared_ptr<KittiFrames>& frames,
+               const std::shared_ptr<FrameTable>& table) {
+    const std::string& camera = frames->sensor();
+    noteSize(*frames, info);
+    const auto stream = streams_.add(camera + "/camera_info", StreamKind::kCameraInfo, table->rows().size());
+    if (!stream) return false;
+    const auto make = [info, frames](const FrameRow& row, const FrameRow*) -> std::optional<Payload> {
+      if (frames->find(row.index) == nullptr) return std::nullopt;
+      CameraInfo stamped = info;
+      stamped.stamp = row.stamp;
+      return stamped;
     };
-    parts_.sources.push_back(std::make_unique<FrameSource>(table, *stream, make, bookOutside(camera, table)));
+    parts_.sources.push_back(std::make_unique<FrameSource>(table, *stream, make));
+    return true;
+  }
+
+  void noteSize(const KittiFrames& frames, const CameraInfo& info) {
+    if (frames.indices().empty()) return;
+    const auto bytes = readWholeFile(*frames.find(*frames.indices().begin()));
+    const auto first = bytes ? kittiImage(*bytes, true) : nullptr;
+    if (!first) return;
+    const cv::Mat& picture = first->pixels;
+    if (picture.cols == static_cast<int>(info.width) && picture.rows == static_cast<int>(info.height)) return;
+    log().note(frames.sensor() + ": pictures are " + std::to_string(picture.cols) + "x" +
+               std::to_string(picture.rows) + ", calibration is for " + std::to_string(info.width) + "x" +
+               std::to_string(info.height) + ", camera_info is not scaled");
   }
 
   RecordOptions options_;
   StreamSet streams_;
   KittiFiles files_;
   KittiCalibration calibration_;
-  std::map<std::uint32_t, Stamp> oxts_stamps_, velodyne_times_;
-  RecordParts parts_;
+  RecordParts parts_{std::make_shared<RecordLog>(), {}, {}, {}};
+  KittiTimes times_{files_, parts_.log};
 };
 }  // namespace
 

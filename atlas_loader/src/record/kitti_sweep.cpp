@@ -15,8 +15,14 @@ class AzimuthWraps {
  public:
   /// az in (-pi, pi].
   int next(double azimuth_rad) {
-    const double az = azimuth_rad < 0 ? azimuth_rad + kTwoPi : azimuth_rad;
     constexpr double kJitter = 0.1;  // rad; neighbouring returns of a laser are 0.003 rad apart
+    if (first_ && azimuth_rad < 0 && azimuth_rad > -kJitter) {  // the file begins just before azimuth 0
+      first_ = false;
+      last_ = azimuth_rad;
+      return wraps_;
+    }
+    first_ = false;
+    const double az = azimuth_rad < 0 ? azimuth_rad + kTwoPi : azimuth_rad;
     if (az < last_ - kJitter) ++wraps_;
     // A return just before azimuth 0 at the start of a laser is still of this laser.
     if (last_ < kJitter && az > kTwoPi - kJitter && wraps_ > 0) --wraps_;
@@ -27,6 +33,7 @@ class AzimuthWraps {
  private:
   double last_ = 0;
   int wraps_ = 0;
+  bool first_ = true;
 };
 }  // namespace
 

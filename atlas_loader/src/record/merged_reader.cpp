@@ -18,10 +18,18 @@ StreamSet::StreamSet(const std::vector<std::string>& topics) {
   seen_.push_back("tf_static");
 }
 
+bool StreamSet::wants(const std::string& topic) const {
+  return topics_.empty() || std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
+}
+
+bool StreamSet::wantsAnyOf(const std::string& sensor) const {
+  const auto of_sensor = [&](const std::string& topic) { return topic.rfind(sensor + "/", 0) == 0; };
+  return topics_.empty() || std::any_of(topics_.begin(), topics_.end(), of_sensor);
+}
+
 std::optional<std::size_t> StreamSet::add(const std::string& topic, StreamKind kind, std::uint64_t expected) {
   seen_.push_back(topic);
-  if (!topics_.empty() && std::find(topics_.begin(), topics_.end(), topic) == topics_.end())
-    return std::nullopt;
+  if (!wants(topic)) return std::nullopt;
   streams_.push_back({topic, kind, expected});
   return streams_.size() - 1;
 }

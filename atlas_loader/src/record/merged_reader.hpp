@@ -21,6 +21,10 @@ class StreamSet {
   explicit StreamSet(const std::vector<std::string>& topics);
   /// Index of the stream; nullopt when it was not asked for.
   std::optional<std::size_t> add(const std::string& topic, StreamKind kind, std::uint64_t expected = 0);
+  /// True when add() would give the stream a number.
+  [[nodiscard]] bool wants(const std::string& topic) const;
+  /// True when any topic that begins with the sensor's name and a slash may be wanted.
+  [[nodiscard]] bool wantsAnyOf(const std::string& sensor) const;
   [[nodiscard]] const std::vector<StreamInfo>& streams() const { return streams_; }
   /// Topics that were asked for and that add() has not seen.
   [[nodiscard]] std::vector<std::string> unknown() const;

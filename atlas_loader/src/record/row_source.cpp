@@ -3,10 +3,16 @@
 
 #include <algorithm>
 
+#include "record/stamp_outlier.hpp"
+
 namespace atlas::record {
 
 RowSource::RowSource(RowFile file, std::shared_ptr<RecordLog> log)
-    : file_(std::move(file)), log_(std::move(log)), lines_(file_.path), fields_(file_.name, ',') {
+    : file_(std::move(file)),
+      log_(std::move(log)),
+      lines_(file_.path),
+      fields_(file_.name, ','),
+      typical_(typicalStamp(file_.path, kReorderRows)) {
   log_->file(file_.name);
   if (!lines_.opened()) log_->note(file_.name + ": cannot be opened");
 }
@@ -17,6 +23,10 @@ void RowSource::take(const Line& line) {
   fields_.assign(line);
   std::vector<Event> events;
   const Stamp stamp = fields_.ok() ? file_.parser(fields_, events) : 0;
+  if (fields_.ok() && isOutlier(stamp + file_.latency, typical_)) {
+    fields_.fail(kOutlier,
+                 "field 1 (stamp): far from the others: '" + std::to_string(stamp + file_.latency) + "'");
+  }
   if (!fields_.ok()) {
     log_->skip(file_.name, fields_.reason(), fields_.example());
     return;
@@ -63,10 +73,27 @@ std::optional<Stamp> RowSource::lastStamp() {
     if ((start > 0 && line->number == 1) || isBlank(line->text)) continue;
     fields.assign(*line);
     const Stamp stamp = fields.stamp(0);
-    if (fields.ok()) last = std::max(last.value_or(stamp), stamp);
+    if (fields.ok() && !isOutlier(stamp, typical_)) last = std::max(last.value_or(stamp), stamp);
   }
   if (last) *last -= file_.latency;
   return last;
+}
+
+/// Moves the rows of the earliest stamp to ready_, their events in the order of streams.
+void RowSource::takeOut() {
+  delivered_ = window_.begin()->first.first;
+  while (!window_.empty() && window_.begin()->first.first == delivered_) {
+    auto row = window_.extract(window_.begin());
+    if (!span_.contains(delivered_)) {
+      log_->skip(file_.name, kOutsideSpan);
+      continue;
+    }
+    ++log_->file(file_.name).used;
+    std::move(row.mapped().begin(), row.mapped().end(), std::back_inserter(ready_));
+  }
+  std::stable_sort(ready_.begin(), ready_.end(),
+                   [](const Event& a, const Event& b) { return a.stream < b.stream; });
+  std::reverse(ready_.begin(), ready_.end());
 }
 
 std::optional<Event> RowSource::next() {
@@ -76,15 +103,7 @@ std::optional<Event> RowSource::next() {
       end();
       return std::nullopt;
     }
-    auto row = window_.extract(window_.begin());
-    delivered_ = row.key().first;
-    if (!span_.contains(delivered_)) {
-      log_->skip(file_.name, kOutsideSpan);
-      continue;
-    }
-    ++log_->file(file_.name).used;
-    ready_ = std::move(row.mapped());
-    std::reverse(ready_.begin(), ready_.end());
+    takeOut();
   }
   Event event = std::move(ready_.back());
   ready_.pop_back();

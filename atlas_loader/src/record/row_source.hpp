@@ -42,6 +42,7 @@ class RowSource : public EventSource {
 
   void fill();
   void take(const Line& line);
+  void takeOut();
   void end();
 
   RowFile file_;
@@ -50,7 +51,8 @@ class RowSource : public EventSource {
   RowFields fields_;
   TimeSpan span_;
   std::map<Key, std::vector<Event>> window_;
-  std::vector<Event> ready_;  ///< of one row, last first
+  std::vector<Event> ready_;      ///< of one stamp, last first
+  std::optional<Stamp> typical_;  ///< of the stamps in the file, before the latency is taken off
   Stamp newest_ = kBeginOfTime, delivered_ = kBeginOfTime;
   std::uint64_t inversions_ = 0, repeated_ = 0;
   bool exhausted_ = false, ended_ = false;

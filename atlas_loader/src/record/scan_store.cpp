@@ -21,12 +21,17 @@ class FolderStore : public ScanStore {
     std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
       const auto index = scanIndex(it->path().filename().string());
-      if (index) files_.emplace(*index, it->path());
+      if (!index) continue;
+      const auto [entry, first] = files_.emplace(*index, it->path());
+      if (first) continue;
+      entry->second = std::min(entry->second, it->path());  // whatever the order of the disk
+      ++repeated_;
     }
     for (const auto& [index, path] : files_) indices_.push_back(index);
   }
   [[nodiscard]] const std::vector<std::uint32_t>& indices() const override { return indices_; }
   [[nodiscard]] std::string place() const override { return place_; }
+  [[nodiscard]] std::uint64_t repeated() const override { return repeated_; }
   ScanBytes read(std::uint32_t index) override {
     const auto it = files_.find(index);
     if (it == files_.end()) return {"", "scan missing"};
@@ -43,6 +48,7 @@ class FolderStore : public ScanStore {
   std::string place_;
   std::map<std::uint32_t, fs::path> files_;
   std::vector<std::uint32_t> indices_;
+  std::uint64_t repeated_ = 0;
 };
 
 struct ArchiveClose {
@@ -59,7 +65,7 @@ class ZipStore : public ScanStore {
     while (archive_entry* entry = nextEntry()) {
       const char* name = archive_entry_pathname(entry);
       const auto index = name ? scanIndex(name) : std::nullopt;
-      if (index) member_of_.emplace(*index, member);
+      if (index && !member_of_.emplace(*index, member).second) ++repeated_;
       ++member;
     }
     listing_error_ = error_;
@@ -69,6 +75,7 @@ class ZipStore : public ScanStore {
   [[nodiscard]] const std::vector<std::uint32_t>& indices() const override { return indices_; }
   [[nodiscard]] std::string listingError() const override { return listing_error_; }
   [[nodiscard]] std::string place() const override { return "scans.zip"; }
+  [[nodiscard]] std::uint64_t repeated() const override { return repeated_; }
 
   ScanBytes read(std::uint32_t index) override {
     const auto it = member_of_.find(index);
@@ -77,7 +84,7 @@ class ZipStore : public ScanStore {
     archive_entry* entry = nullptr;
     while (next_member_ <= it->second) {
       entry = nextEntry();
-      if (!entry) return fail("zip member unreachable");
+      if (!entry) return fail("zip member unreachable", true);
       ++next_member_;
     }
     ScanBytes scan;
@@ -85,9 +92,9 @@ class ZipStore : public ScanStore {
     while (true) {
       const la_ssize_t got = archive_read_data(archive_.get(), chunk, sizeof(chunk));
       if (got == 0) return scan;
-      if (got < 0) return fail("zip member damaged");
+      if (got < 0) return fail("zip member damaged", got == ARCHIVE_FATAL);
       scan.bytes.append(chunk, static_cast<std::size_t>(got));
-      if (scan.bytes.size() > kMaxScan) return fail("zip member too large");
+      if (scan.bytes.size() > kMaxScan) return fail("zip member too large", false);
     }
   }
 
@@ -110,8 +117,8 @@ class ZipStore : public ScanStore {
     if (result != ARCHIVE_EOF) setError();
     return nullptr;
   }
-  ScanBytes fail(const std::string& reason) {
-    archive_.reset();  // its state is unknown: the next read starts from the beginning
+  ScanBytes fail(const std::string& reason, bool fatal) {
+    if (fatal) archive_.reset();  // its state is unknown: the next read starts from the beginning
     return {"", reason};
   }
   void setError() {
@@ -124,6 +131,7 @@ class ZipStore : public ScanStore {
   std::uint32_t next_member_ = 0;
   std::map<std::uint32_t, std::uint32_t> member_of_;  ///< scan number -> place in the archive
   std::vector<std::uint32_t> indices_;
+  std::uint64_t repeated_ = 0;
   std::string error_, listing_error_;
 };
 }  // namespace

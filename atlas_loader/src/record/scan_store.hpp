@@ -26,6 +26,8 @@ class ScanStore {
   virtual ScanBytes read(std::uint32_t index) = 0;
   /// Trouble met while listing; "" = none.
   [[nodiscard]] virtual std::string listingError() const { return ""; }
+  /// Files or members whose number was there already; the first one counts.
+  [[nodiscard]] virtual std::uint64_t repeated() const { return 0; }
   /// Relative to the sensor's folder: "scans.zip", "scans" or "".
   [[nodiscard]] virtual std::string place() const = 0;
 };

@@ -75,6 +75,9 @@ void LineReader::seek(std::uint64_t offset, std::uint64_t number) {
 std::optional<Line> LineReader::finish(bool too_long) {
   ++line_;
   std::string_view text = text_;
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (line_ == 1 && text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
+    text.remove_prefix(kByteOrderMark.size());
   if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
   return Line{text, line_, line_offset_, too_long};
 }

@@ -12,6 +12,7 @@ extern "C" {
 #include <opencv2/imgproc.hpp>
 
 #include "record/libav_support.hpp"
+#include "record/video_file.hpp"
 
 namespace atlas {
 namespace {
@@ -35,6 +36,28 @@ bool isFullRange(const AVFrame& frame) {
   const auto format = static_cast<AVPixelFormat>(frame.format);
   return frame.color_range == AVCOL_RANGE_JPEG || format == AV_PIX_FMT_YUVJ420P ||
          format == AV_PIX_FMT_YUVJ422P || format == AV_PIX_FMT_YUVJ444P || format == AV_PIX_FMT_GRAY8;
+}
+/// The usual layout of video, for which OpenCV has a conversion six times as fast as that of libswscale:
+/// 4:2:0, limited range, not BT.709 (unspecified = BT.601, as in libswscale), even sides.
+bool isPlain420(const AVFrame& frame) {
+  return frame.format == AV_PIX_FMT_YUV420P && frame.color_range != AVCOL_RANGE_JPEG &&
+         frame.colorspace != AVCOL_SPC_BT709 && frame.width % 2 == 0 && frame.height % 2 == 0;
+}
+
+cv::Mat bgrOfPlain420(const AVFrame& frame) {
+  cv::Mat planes(frame.height * 3 / 2, frame.width, CV_8UC1);  // Y, then U, then V
+  std::uint8_t* to = planes.data;
+  for (int plane = 0; plane < 3; ++plane) {
+    const int width = plane == 0 ? frame.width : frame.width / 2;
+    const int height = plane == 0 ? frame.height : frame.height / 2;
+    for (int row = 0; row < height; ++row, to += width) {
+      std::memcpy(to, frame.data[plane] + static_cast<std::ptrdiff_t>(row) * frame.linesize[plane],
+                  static_cast<std::size_t>(width));
+    }
+  }
+  cv::Mat image;
+  cv::cvtColor(planes, image, cv::COLOR_YUV2BGR_I420);
+  return image;
 }
 }  // namespace
 
@@ -127,7 +150,9 @@ class VideoDecoder::Codec {
     while (avcodec_receive_frame(context_.get(), frame.get()) >= 0) {
       const bool damaged = (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0 || frame->decode_error_flags != 0;
       const auto stamp = stamps_.find(static_cast<std::uint32_t>(frame->pts));
-      if (damaged) {
+      if (frame->pts == kNoPicture) {
+        ++counts.before_span;
+      } else if (damaged) {
         ++counts.damaged;
       } else if (frame->pts < 0 || stamp == stamps_.end()) {
         ++counts.without_stamp;
@@ -145,6 +170,7 @@ class VideoDecoder::Codec {
   }
 
   cv::Mat bgr(const AVFrame& frame) {
+    if (isPlain420(frame)) return bgrOfPlain420(frame);
     const auto format = static_cast<AVPixelFormat>(frame.format);
     constexpr int kFlags = SWS_BILINEAR | SWS_ACCURATE_RND | SWS_BITEXACT | SWS_FULL_CHR_H_INT;
     scaler_.reset(sws_getCachedContext(scaler_.release(), frame.width, frame.height, format, frame.width,

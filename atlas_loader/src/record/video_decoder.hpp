@@ -23,6 +23,7 @@ class VideoDecoder {
     std::uint64_t images = 0;           ///< delivered
     std::uint64_t before_keyframe = 0;  ///< packets without a keyframe before them
     std::uint64_t undecodable = 0;      ///< packets that the decoder refused
+    std::uint64_t before_span = 0;      ///< pictures of packets with kNoPicture, not delivered
     std::uint64_t damaged = 0;          ///< pictures with missing or concealed parts, not delivered
     std::uint64_t without_stamp = 0;    ///< pictures whose stamp is unknown, not delivered
     std::string codec_error;            ///< the codec cannot be opened at all

@@ -45,6 +45,7 @@ class VideoFile::Demuxer {
     silenceLibav();
     open();
     readIndex(path);
+    if (frames + missing == 0) throw std::runtime_error(path_ + ": a video without pictures");
   }
 
   std::string codec;
@@ -67,11 +68,9 @@ class VideoFile::Demuxer {
     while (keyframe > 0 && (keyframe >= entries_.size() || !entries_[keyframe].keyframe)) --keyframe;
     format_.reset();
     open();
-    if (keyframe > 0 &&
-        av_seek_frame(format_.get(), stream_, entries_[keyframe].dts, AVSEEK_FLAG_BACKWARD) >= 0) {
-      next_decode_ = next_rank_ =
-          keyframe;  // all pictures before a keyframe in decoding order are shown before it
-    }
+    if (keyframe == 0 || startAt(keyframe)) return;
+    format_.reset();  // from the beginning: slower, never wrong
+    open();
   }
 
  private:
@@ -148,15 +147,39 @@ class VideoFile::Demuxer {
     open();
   }
 
+  /// Continues at the keyframe or at one before it; false when that fails. Asks for the time of the last
+  /// picture of the group: for the keyframe's own decoding time libav goes one group too far back, as it
+  /// takes it for a time of presentation. Where it really is, the first packet's place in the file tells.
+  bool startAt(std::uint32_t keyframe) {
+    std::size_t last = keyframe;
+    while (last + 1 < entries_.size() && !entries_[last + 1].keyframe) ++last;
+    if (av_seek_frame(format_.get(), stream_, entries_[last].dts, AVSEEK_FLAG_BACKWARD) < 0) return false;
+    PacketPtr packet(av_packet_alloc());
+    do {
+      av_packet_unref(packet.get());
+      if (av_read_frame(format_.get(), packet.get()) < 0) return false;
+    } while (packet->stream_index != stream_);
+    std::uint32_t landed = 0;
+    while (landed <= keyframe && entries_[landed].position != packet->pos) ++landed;
+    if (landed > keyframe || !entries_[landed].keyframe) return false;
+    next_decode_ = next_rank_ = landed;  // pictures before a keyframe in decoding order are shown before it
+    take(packet);
+    return true;
+  }
+
   void readOne() {
     PacketPtr packet(av_packet_alloc());
     const bool cut = !entries_.empty() && next_decode_ >= frames;
     if (cut || av_read_frame(format_.get(), packet.get()) < 0) {
       ended_ = true;
-      rankUpTo(INT64_MAX);
+      const bool whole = entries_.empty() || (missing == 0 && next_decode_ >= frames);
+      whole ? rankUpTo(INT64_MAX) : giveUpRanks();
       return;
     }
-    if (packet->stream_index != stream_) return;
+    if (packet->stream_index == stream_) take(packet);
+  }
+
+  void take(PacketPtr& packet) {
     const std::int64_t order = static_cast<std::int64_t>(next_decode_);
     const std::int64_t dts = packet->dts != AV_NOPTS_VALUE ? packet->dts : order;
     const std::int64_t pts = packet->pts != AV_NOPTS_VALUE ? packet->pts : dts;
@@ -176,6 +199,15 @@ class VideoFile::Demuxer {
       entry.packet.pts_index = next_rank_++;
       entry.ranked = true;
     }
+  }
+
+  /// Pictures that are shown after ones that are not there: nobody knows how many come between.
+  void giveUpRanks() {
+    for (Waiting& entry : waiting_) {
+      if (!entry.ranked) entry.packet.pts_index = kNoPicture;
+      entry.ranked = true;
+    }
+    pending_.clear();
   }
 
   VideoPacket toVideoPacket(PacketPtr& packet) {

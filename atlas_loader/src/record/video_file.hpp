@@ -14,6 +14,10 @@
 
 namespace atlas {
 
+/// pts_index of a packet that is there for decoding only: its picture is outside of the requested span, or
+/// its place is unknown because the file is cut.
+inline constexpr std::uint32_t kNoPicture = 0xffffffff;
+
 class VideoFile {
  public:
   /// Throws std::runtime_error "<path>: ..." when the file is no readable video.

@@ -33,33 +33,42 @@ void VideoSource::limit(const TimeSpan& span) {
   bool any = false;
   for (const FrameRow& row : video_.table->rows()) {
     if (!span.contains(row.stamp)) continue;
-    first_wanted_ = any ? std::min(first_wanted_, row.index) : row.index;
+    if (!any || row.index < first_wanted_) {
+      first_wanted_ = row.index;
+      first_stamp_ = row.stamp;
+    }
     end_wanted_ = std::max(end_wanted_, row.index + 1);
     any = true;
   }
+  pictures_due_ = end_wanted_ - first_wanted_;
   if (any && first_wanted_ > 0) video_.file->seek(first_wanted_);
 }
 
-bool VideoSource::isWanted(const VideoPacket& packet) const {
-  return packet.decode_index >= first_wanted_ && packet.decode_index < end_wanted_;
-}
-
 std::optional<VideoPacket> VideoSource::nextPacket() {
-  while (true) {
-    auto packet = end_wanted_ > 0 ? video_.file->next() : std::nullopt;
-    if (!packet || packet->decode_index >= end_wanted_) return std::nullopt;
-    packet->frame = video_.camera;
-    const FrameRow* row = video_.table->find(packet->decode_index);
-    if (!row && !stamp_before_) continue;  // no time known yet: cannot be placed
-    packet->stamp = row ? row->stamp : *stamp_before_ + 1;
-    if (monotonic_ && stamp_before_ && packet->stamp <= *stamp_before_) {
-      packet->stamp = *stamp_before_ + 1;
-      if (row && isWanted(*packet)) ++going_back_;
-    }
-    if (!row && isWanted(*packet)) ++without_row_;
-    stamp_before_ = packet->stamp;
+  if (pictures_due_ == 0 && next_index_ >= end_wanted_) return std::nullopt;
+  auto packet = video_.file->next();
+  if (!packet) return std::nullopt;
+  next_index_ = packet->decode_index + 1;
+  packet->frame = video_.camera;
+  if (packet->pts_index == kNoPicture) ++unplaced_;
+  const bool due = packet->pts_index >= first_wanted_ && packet->pts_index < end_wanted_;
+  if (!due) packet->pts_index = kNoPicture;
+  if (due) --pictures_due_;
+  if (packet->decode_index < first_wanted_) {
+    constexpr Duration kStep = 10;  // ns; more than the 1 ns of packets without a time of their own
+    packet->stamp = first_stamp_ - kStep * static_cast<Duration>(first_wanted_ - packet->decode_index);
     return packet;
   }
+  const bool inside = packet->decode_index < end_wanted_;
+  const FrameRow* row = inside ? video_.table->find(packet->decode_index) : nullptr;
+  packet->stamp = row ? row->stamp : stamp_before_ + 1;  // the first wanted one has a row
+  if (monotonic_ && packet->decode_index > first_wanted_ && packet->stamp <= stamp_before_) {
+    packet->stamp = stamp_before_ + 1;
+    if (row) ++going_back_;
+  }
+  if (!row && inside) ++without_row_;
+  stamp_before_ = packet->stamp;
+  return packet;
 }
 
 void VideoSource::account(std::uint64_t used, const std::string& reason) {
@@ -90,12 +99,20 @@ PacketSource::PacketSource(VideoOfCamera video, std::shared_ptr<RecordLog> log)
 
 std::optional<Event> PacketSource::next() {
   while (auto packet = nextPacket()) {
-    if (!isWanted(*packet)) continue;
     started_ = started_ || packet->keyframe;
     if (!started_) continue;
-    ++used_;
+    const bool inside = packet->decode_index >= first_wanted_ && packet->decode_index < end_wanted_;
+    ++(inside ? used_ : outside_);
     const Stamp stamp = packet->stamp;
     return Event{stamp, video_.stream, std::make_shared<const VideoPacket>(std::move(*packet))};
+  }
+  if (outside_ > 0) {
+    log_->note(video_.name + ": " + std::to_string(outside_) +
+               " packets around the span kept, some of its pictures cannot be decoded without them");
+  }
+  if (unplaced_ > 0) {
+    log_->note(video_.name + ": cut, " + std::to_string(unplaced_) +
+               " pictures at its end whose place in time is unknown, they have no stamp");
   }
   if (without_row_ > 0) {
     log_->note(video_.name + ": " + std::to_string(without_row_) +
@@ -106,7 +123,7 @@ std::optional<Event> PacketSource::next() {
                " packets whose row goes back in time: their pictures have no stamp (decoding while reading "
                "sorts them)");
   }
-  account(used_, first_wanted_ > 0 ? "before the first keyframe of the span" : "unreadable");
+  account(used_, "unreadable");
   return std::nullopt;
 }
 
@@ -164,7 +181,7 @@ void ImageSource::end() {
                std::to_string(counts.damaged) + " pictures damaged, " + std::to_string(counts.without_stamp) +
                " without a stamp, " + std::to_string(too_late_) + " too far out of order");
   }
-  account(used_, "not decodable");
+  account(used_, unplaced_ > 0 ? "not decodable, or of unknown place in a cut video" : "not decodable");
 }
 
 }  // namespace atlas::record

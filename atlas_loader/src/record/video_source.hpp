@@ -34,9 +34,10 @@ class VideoSource : public EventSource {
 
  protected:
   /// The next packet with stamp and frame; nullopt at the end of the span or of the file. A packet without a
-  /// row comes 1 ns after the one before it (see VideoDecoder); those after the last row are not read.
+  /// row comes 1 ns after the one before it (see VideoDecoder). Packets from outside of the span that its
+  /// pictures need come too, with kNoPicture: those from the keyframe on 10 ns apart before the first stamp,
+  /// those behind (pictures are not stored in order) 1 ns apart after the last.
   std::optional<VideoPacket> nextPacket();
-  [[nodiscard]] bool isWanted(const VideoPacket& packet) const;
   /// Books all pictures: `used` were delivered, `unread` could not be, for `reason`, the others have their
   /// own reasons.
   void account(std::uint64_t used, const std::string& reason);
@@ -46,14 +47,17 @@ class VideoSource : public EventSource {
   TimeSpan span_;
   std::uint32_t first_wanted_ = 0, end_wanted_ = 0;  ///< decode indices [first, end)
   std::uint64_t without_row_ = 0, going_back_ = 0;
+  std::uint64_t unplaced_ = 0;  ///< pictures at the end of a cut file
 
  private:
   bool monotonic_;
-  std::optional<Stamp> stamp_before_;
+  Stamp first_stamp_ = 0;  ///< of the first wanted packet
+  Stamp stamp_before_ = 0;
+  std::uint32_t next_index_ = 0, pictures_due_ = 0;
   bool accounted_ = false;
 };
 
-/// Packets in decoding order, from the first keyframe of the span.
+/// Packets in decoding order, from the keyframe that the first picture of the span needs.
 class PacketSource : public VideoSource {
  public:
   PacketSource(VideoOfCamera video, std::shared_ptr<RecordLog> log);
@@ -61,7 +65,7 @@ class PacketSource : public VideoSource {
 
  private:
   bool started_ = false;
-  std::uint64_t used_ = 0;
+  std::uint64_t used_ = 0, outside_ = 0;
 };
 
 /// Pictures in order of stamps, as pixels or as JPEG.
