@@ -121,6 +121,31 @@ TEST_F(PointsTest, ObjectsAreApartFromWhatStands) {
   EXPECT_NEAR(result["object_error_m"]["median"], 2.0, kRounding);
 }
 
+TEST_F(PointsTest, ScansAfterFiveSecondsOfDrivingAreApart) {
+  const auto poses = [](Stamp from_s, Stamp to_s) {  // 1 m/s
+    std::string text;
+    for (Stamp t = 10 * from_s; t < 10 * to_s; ++t) {
+      Odometry odometry;
+      odometry.stamp = t * kSecond / 10;
+      odometry.T_map_imu.translation.x() = 0.1 * static_cast<double>(t);
+      text += tumLine(odometry);
+    }
+    return text;
+  };
+  writeText(folders_.truth / "trajectory.tum", poses(100, 110));
+  // Scan 0 ends after 4 s of driving, scan 5 after 6 s.
+  writeText(folders_.record / "lidar_left" / "timestamps.txt", "104000000000,0, 0\r\n106000000000,5, 0\r\n");
+  int written = 0;
+  writeRun([&](std::size_t, const Eigen::Vector3d& p) {
+    return Eigen::Vector3d(p + Eigen::Vector3d(written++ < 3000 ? 1.0 : 0.25, 0, 0));
+  });
+  const auto result = compare().toJson()["points"];
+  EXPECT_NEAR(result["static_error_m"]["max"], 1.0, kRounding);
+  EXPECT_NEAR(result["static_error_after_5_s_of_driving_m"]["max"], 0.25, kRounding);
+  EXPECT_EQ(2 * result["static_error_after_5_s_of_driving_m"]["count"].get<int>(),
+            result["static_error_m"]["count"].get<int>());
+}
+
 TEST_F(PointsTest, LostAndInventedReturnsAreCounted) {
   writeRun([](std::size_t i, const Eigen::Vector3d& p) {
     if (i % 10 == 0) return Eigen::Vector3d(1, 2, 3);

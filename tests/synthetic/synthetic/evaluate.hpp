@@ -30,6 +30,10 @@ Evaluation evaluateRun(const RunFolders& folders);
 /// T_truth_run between two maps: both are rigid in the earth, so it is one rotation and one translation.
 Pose betweenMaps(const Geodetic& truth_anchor, const Geodetic& run_anchor);
 
+/// First true stamp with 5 s of driving behind it, when a filter has had its chance to find the heading;
+/// nothing when the car never drives that long.
+std::optional<Stamp> settledFrom(const std::vector<StampedPose>& truth);
+
 /// Errors of out/trajectory/<name>.tum at the true stamps, over all and after 5 s of driving.
 void evaluateTrajectory(const RunFolders& folders, const std::string& name, const Pose& T_truth_run,
                         Evaluation& evaluation);

@@ -6,6 +6,7 @@
 
 #include "atlas/output/pcd.hpp"
 #include "synthetic/evaluate.hpp"
+#include "synthetic/record_files.hpp"
 #include "synthetic/rigid_fit.hpp"
 #include "synthetic/scan_files.hpp"
 
@@ -18,6 +19,7 @@ constexpr double kDegree = M_PI / 180.0;
 
 struct PointErrors {
   std::vector<float> static_m, object_m, distortion_m;  ///< by point
+  std::vector<float> settled_m;                         ///< of static points, after 5 s of driving
   std::vector<float> scan_turn_deg;                     ///< by scan: rotation of the best rigid motion
   Share lost;                                           ///< returns without a point
   std::uint64_t invented = 0;
@@ -27,6 +29,7 @@ struct PointErrors {
       to.insert(to.end(), from.begin(), from.end());
     };
     join(static_m, other.static_m);
+    join(settled_m, other.settled_m);
     join(object_m, other.object_m);
     join(distortion_m, other.distortion_m);
     join(scan_turn_deg, other.scan_turn_deg);
@@ -35,6 +38,7 @@ struct PointErrors {
   }
   void report(const std::string& group, Evaluation& evaluation) {
     evaluation.add(group, "static_error_m", statisticsOf(static_m));
+    evaluation.add(group, "static_error_after_5_s_of_driving_m", statisticsOf(settled_m));
     evaluation.add(group, "object_error_m", statisticsOf(object_m));
     evaluation.add(group, "distortion_m", statisticsOf(distortion_m));
     evaluation.add(group, "scan_turn_deg", statisticsOf(scan_turn_deg));
@@ -75,12 +79,23 @@ void compareScan(const std::vector<LidarPoint>& run, const std::vector<TruthPoin
   errors.scan_turn_deg.push_back(static_cast<float>(logSo3(T->rotation).norm() / kDegree));
 }
 
-PointErrors compareLidar(const fs::path& truth_folder, const fs::path& run_folder, const Pose& T_truth_run,
+/// Index of the first scan after 5 s of driving; nothing when the record does not tell.
+std::optional<int> settledScan(const RunFolders& folders, const std::string& lidar) {
+  const auto settled = settledFrom(readTrajectory(folders.truth / "trajectory.tum"));
+  if (!settled) return std::nullopt;
+  for (const auto& [index, stamp] : readFrameStamps(folders.record / lidar / "timestamps.txt")) {
+    if (stamp >= *settled) return index;
+  }
+  return std::nullopt;
+}
+
+PointErrors compareLidar(const RunFolders& folders, const std::string& lidar, const Pose& T_truth_run,
                          Evaluation& evaluation) {
   PointErrors errors;
-  const std::string label = "deskewed/" + run_folder.filename().string();
-  for (const auto& [index, path] : numberedFiles(truth_folder, ".bin")) {
-    const fs::path file = run_folder / (path.stem().string() + ".pcd");
+  const std::string label = "deskewed/" + lidar;
+  const std::optional<int> settled = settledScan(folders, lidar);
+  for (const auto& [index, path] : numberedFiles(folders.truth / "points" / lidar, ".bin")) {
+    const fs::path file = folders.out / "deskewed" / lidar / (path.stem().string() + ".pcd");
     if (!fs::exists(file)) {
       evaluation.skip(label + ": scan with truth but no file");
       continue;
@@ -95,7 +110,11 @@ PointErrors compareLidar(const fs::path& truth_folder, const fs::path& run_folde
       evaluation.skip(label + ": " + file.string() + " has " + std::to_string(run->size()) +
                       " points, the scan " + std::to_string(truth.size()));
     } else {
+      const auto before = static_cast<std::ptrdiff_t>(errors.static_m.size());
       compareScan(*run, truth, T_truth_run, errors);
+      if (settled && index >= *settled)
+        errors.settled_m.insert(errors.settled_m.end(), errors.static_m.begin() + before,
+                                errors.static_m.end());
     }
   }
   return errors;
@@ -118,8 +137,7 @@ void evaluatePoints(const RunFolders& folders, const Pose& T_truth_run, Evaluati
   PointErrors all;
   std::vector<std::pair<std::string, PointErrors>> lidars;
   for (const std::string& lidar : foldersOf(folders.truth / "points")) {
-    lidars.emplace_back(lidar, compareLidar(folders.truth / "points" / lidar,
-                                            folders.out / "deskewed" / lidar, T_truth_run, evaluation));
+    lidars.emplace_back(lidar, compareLidar(folders, lidar, T_truth_run, evaluation));
     all.append(lidars.back().second);
   }
   if (all.lost.whole == 0) return;

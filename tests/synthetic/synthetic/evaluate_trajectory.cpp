@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr double kDriving_mps = 0.5;  // slower is standing
-constexpr double kSettled_s = 5.0;  // of driving, after which a filter has had its chance to find the heading
+constexpr double kSettled_s = 5.0;
 
 /// Errors of one span of time.
 struct PoseErrors {
@@ -33,7 +33,8 @@ struct PoseErrors {
   }
 };
 
-/// First stamp with 5 s of driving behind it; nothing when the car never drives that long.
+}  // namespace
+
 std::optional<Stamp> settledFrom(const std::vector<StampedPose>& truth) {
   Duration driven = 0;
   for (std::size_t i = 1; i < truth.size(); ++i) {
@@ -44,8 +45,6 @@ std::optional<Stamp> settledFrom(const std::vector<StampedPose>& truth) {
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 void evaluateTrajectory(const RunFolders& folders, const std::string& name, const Pose& T_truth_run,
                         Evaluation& evaluation) {
