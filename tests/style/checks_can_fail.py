@@ -18,6 +18,7 @@ CASES = {
     "file_length": ("atlas_msgs/a.cpp", LICENCE + "\n" * 400, "a.cpp:401:"),
     "no_hidden_inputs": ("atlas_lidar/src/a.cpp", LICENCE + "auto t = ros::Time::now();\n", "a.cpp:2:"),
     "formatting": ("atlas_lidar/src/a.cpp", LICENCE + "int  a ;\n", "a.cpp:2:"),
+    "regression_table": ("tests/README.md", "| W1 | wrong | `Some.Test` | covered |\n", "README.md:1: there is no test"),
     "plain_words": ("atlas_bringup/launch/a.launch", '<arg name="a" default="' + "/home" + '/me/a"/>\n', "a.launch:1:"),
 }
 

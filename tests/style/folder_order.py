@@ -9,8 +9,6 @@ from sources import CPP, files, finish, read, root
 ORDER = [{"base"}, {"sensor"}, {"calibration"}, {"localization", "lidar", "camera", "stereo"}, {"fusion", "grid"}, {"output"},
          {"pipeline"}]
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
-# The window of sweeps with poses belongs to the lidar but is what the camera stages project.
-EXCEPTIONS = {("camera", "atlas/lidar/sweep_window.hpp")}
 INCLUDE = re.compile(r'#\s*include\s*[<"](atlas/([^/">]+)[^">]*)[">]')
 
 
@@ -31,7 +29,7 @@ def main():
             if not match:
                 continue
             target = match.group(2).split(".")[0]
-            if target == folder or (folder, match.group(1)) in EXCEPTIONS:
+            if target == folder:
                 continue
             if target not in RANK or RANK[target] >= RANK[folder]:
                 problems.append((path, number, f"'{folder}' may not include '{match.group(1)}'"))

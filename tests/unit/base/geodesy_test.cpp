@@ -37,7 +37,7 @@ TEST(LocalEnu, AxesPointEastNorthUp) {
   EXPECT_LT((map.toMap(g) - Eigen::Vector3d(0, 0, 2)).norm(), 1e-9);
 }
 
-TEST(LocalEnu, AgreesWithTheEllipsoidToTheTenthOfAMillimetre) {
+TEST(LocalEnu, W11_AgreesWithTheEllipsoidToTheTenthOfAMillimetre) {
   // W11: a sphere loses 3.07 m of each kilometre to the east here.
   const LocalEnu map(kBrno);
   const double lat = kBrno.latitude_deg * kDeg, lon = kBrno.longitude_deg * kDeg;

@@ -10,7 +10,7 @@ namespace {
 
 Pose at(double x, double yaw) { return {fromRollPitchYaw({0, 0, yaw}), {x, 0, 0}}; }
 
-TEST(Trajectory, TenPercentIsNotNinetyPercent) {
+TEST(Trajectory, W2_InterpolationIsNotMirrored) {
   // W2: the published program mirrored the interpolation in time.
   Trajectory trajectory;
   trajectory.push({1000, at(0.0, 0.0)});
@@ -21,7 +21,7 @@ TEST(Trajectory, TenPercentIsNotNinetyPercent) {
   EXPECT_NEAR(toRollPitchYaw(pose->rotation).yaw, 0.1, 1e-12);
 }
 
-TEST(Trajectory, AfterTheNewestThereIsNoPose) {
+TEST(Trajectory, W3_AfterTheNewestThereIsNoPose) {
   // W3: the published program answered 9.2e10 m.
   Trajectory trajectory;
   trajectory.push({1000, at(0.0, 0.0)});
@@ -31,7 +31,7 @@ TEST(Trajectory, AfterTheNewestThereIsNoPose) {
   EXPECT_EQ(pose.reason(), Reason::kPoseNotReached);
 }
 
-TEST(Trajectory, BeforeTheFirstAndWhenEmptyThereIsNoPose) {
+TEST(Trajectory, W12_BeforeTheFirstAndWhenEmptyThereIsNoPose) {
   Trajectory trajectory;
   EXPECT_EQ(trajectory.at(5).reason(), Reason::kNoPoseYet);
   trajectory.push({1000, at(0.0, 0.0)});

@@ -78,7 +78,7 @@ TEST(CameraLidarStage, distanceOfTheWallByHand) {
 }
 
 // W13 through the whole stage, with the real lens: an object at the image's border keeps its distance.
-TEST(CameraLidarStage, objectAtTheImageBorderStaysAtItsDistance) {
+TEST(CameraLidarStage, W13_objectAtTheImageBorderStaysAtItsDistance) {
   Inputs inputs;
   inputs.infos = {leftFrontInfo(kStart)};
   inputs.infos[0].frame = "camera";
@@ -93,6 +93,24 @@ TEST(CameraLidarStage, objectAtTheImageBorderStaysAtItsDistance) {
     EXPECT_GT(std::abs(f.position.y()), 11.0);
     EXPECT_GT(f.range_m, 22.5);
   }
+}
+
+// The pose is the one at the image's own stamp, between two poses: at 20 m/s the last one would be 8 cm
+// behind, the last GNSS pose of the published program up to 1 m.
+TEST(CameraLidarStage, W6_usesThePoseOfTheImage) {
+  const Stamp image = kStart + 104 * kMillisecond;
+  Inputs inputs;
+  inputs.odometry.clear();
+  for (int i = 0; i <= 20; ++i)
+    inputs.odometry.push_back(test::odometry(kStart + i * 10 * kMillisecond, {0.2 * i, 0, 0}));
+  inputs.sweeps = {sweepOf(wall(30.0, 12.0, 9.0, 0.1), kStart)};
+  inputs.infos = {simpleInfo("camera", image)};
+  inputs.detections = {detectionsOf({car(40, 30, 60, 50)}, image)};
+  CameraLidarStage stage(params());
+  const auto result = answers(stage, inputs);
+  ASSERT_EQ(result[0].frustums.size(), 1U);
+  EXPECT_NEAR(result[0].frustums[0].distance_m, 30.0 - 2.08, 1e-4);
+  EXPECT_NEAR(result[0].frustums[0].position.x(), 30.0, 1e-4) << "the wall stands still in map";
 }
 
 TEST(CameraLidarStage, everyDetectionWithoutFrustumHasAReason) {

@@ -72,7 +72,7 @@ TEST(CameraModel, rationalAndFisheyeAgreeWithOpenCv) {
 }
 
 // W14: the bearing undoes the distortion; without that the corners are off by up to 2.25 deg.
-TEST(CameraModel, bearingIsTheInverseOfProjectionOverTheWholeImage) {
+TEST(CameraModel, W14_bearingIsTheInverseOfProjectionOverTheWholeImage) {
   for (const CameraInfo& info : budCameras()) {
     const CameraModel model = modelOf(info);
     for (double u = -0.5; u <= model.width(); u += model.width() / 48.0) {
@@ -89,7 +89,7 @@ TEST(CameraModel, bearingIsTheInverseOfProjectionOverTheWholeImage) {
   }
 }
 
-TEST(CameraModel, bearingOfACornerDiffersFromThePinholeByDegrees) {
+TEST(CameraModel, W14_bearingOfACornerDiffersFromThePinholeByDegrees) {
   const CameraModel model = modelOf(irInfo());
   const Eigen::Vector3d bearing = model.bearing({0.0, 0.0}).value();
   const Eigen::Vector3d pinhole((0.0 - model.cx()) / model.fx(), (0.0 - model.cy()) / model.fy(), 1.0);
@@ -99,7 +99,7 @@ TEST(CameraModel, bearingOfACornerDiffersFromThePinholeByDegrees) {
 }
 
 // W15: beyond the angle at which the distorted radius is largest, points would come back into the image.
-TEST(CameraModel, pointsBeyondTheFoldAreNotInTheImage) {
+TEST(CameraModel, W15_pointsBeyondTheFoldAreNotInTheImage) {
   for (const CameraInfo& info : budCameras()) {
     const CameraModel model = modelOf(info);
     const double fold_deg = std::atan(model.maxTangent()) * 180.0 / M_PI;
@@ -121,7 +121,7 @@ TEST(CameraModel, pointsBeyondTheFoldAreNotInTheImage) {
   }
 }
 
-TEST(CameraModel, foldIsWhereTheRadiusStopsGrowing) {
+TEST(CameraModel, W15_foldIsWhereTheRadiusStopsGrowing) {
   CameraInfo info = simpleInfo();
   info.distortion = {-0.3, 0.0, 0.0, 0.0, 0.0};
   // d/dr (r - 0.3 r^3) = 1 - 0.9 r^2 = 0

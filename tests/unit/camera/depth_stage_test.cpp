@@ -72,7 +72,7 @@ std::uint64_t knownPixels(const cv::Mat& depth) {
 }
 
 // z-depth of a wall is the same in every pixel; range would grow by 15 % towards the corners (W13).
-TEST(DepthStage, wallHasOneDepthEverywhere) {
+TEST(DepthStage, W13_wallHasOneDepthEverywhere) {
   DepthStage stage(params());
   const auto result = answers(stage, standing());
   ASSERT_EQ(result.size(), 1U);
@@ -88,7 +88,7 @@ TEST(DepthStage, wallHasOneDepthEverywhere) {
   }
 }
 
-TEST(DepthStage, nearObjectHidesFarWall) {
+TEST(DepthStage, W18_nearObjectHidesFarWall) {
   for (const bool near_first : {true, false}) {
     Inputs inputs = standing();
     const auto object = sweepOf(wall(5.0, 0.5, 0.5, 0.02), kStart - 100 * kMillisecond);
@@ -105,7 +105,7 @@ TEST(DepthStage, nearObjectHidesFarWall) {
 
 // The car drives towards the wall: the image is made at the pose interpolated at its own stamp, from points
 // kept in map.
-TEST(DepthStage, usesThePoseOfTheImage) {
+TEST(DepthStage, W6_usesThePoseOfTheImage) {
   Inputs inputs = standing();
   inputs.odometry.clear();
   for (int i = -50; i <= 50; ++i)
@@ -129,7 +129,7 @@ TEST(DepthStage, sweepsAfterTheImageAndBeforeTheWindowAreNotSeen) {
   }
 }
 
-TEST(DepthStage, unknownIsNaNAndCounted) {
+TEST(DepthStage, W12_unknownIsNaNAndCounted) {
   const auto check = [](const std::function<void(Inputs&)>& change, const std::string& counter) {
     Inputs inputs = standing();
     change(inputs);

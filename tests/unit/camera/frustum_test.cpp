@@ -81,7 +81,7 @@ TEST(MakeFrustum, byHand) {
 
 // W13: an object at 20 m stays at 20 m at the image's border; taking its z-depth for its range puts it
 // at 15.5..17.8 m.
-TEST(MakeFrustum, depthIsKeptAtTheBorderOfEveryCamera) {
+TEST(MakeFrustum, W13_depthIsKeptAtTheBorderOfEveryCamera) {
   for (const CameraInfo& info : budCameras()) {
     const CameraModel model = CameraModel::fromInfo(info).value();
     const Detection2d corner = box(0, 0, 0.06 * model.width(), 0.06 * model.height());

@@ -75,7 +75,7 @@ TEST(Projector, usesThePoseOfEachPointsBatch) {
 }
 
 // W18: the order of the points must not matter, the nearest one is what a camera would see.
-TEST(DepthBuffer, nearestWinsInAnyOrder) {
+TEST(DepthBuffer, W18_nearestWinsInAnyOrder) {
   for (const bool near_first : {true, false}) {
     DepthBuffer buffer(10, 8);
     buffer.add({4.2F, 3.4F, near_first ? 5.0F : 20.0F});

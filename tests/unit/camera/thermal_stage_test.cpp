@@ -137,7 +137,7 @@ TEST(ThermalStage, camerasShareAFrame) {
 }
 
 // The pose is that of the thermal frame, not of the RGB image: at 20 m/s the 30 ms between them are 0.6 m.
-TEST(ThermalStage, usesThePoseOfTheThermalFrame) {
+TEST(ThermalStage, W6_usesThePoseOfTheThermalFrame) {
   Inputs inputs{{}, {ms(30)}, {{plateAt(ms(0), 0.0, 10.6)}}};
   for (int i = -10; i <= 20; ++i) inputs.odometry.push_back(odometry(ms(i * 10), {0.2 * i, 0, 0}));
   ThermalStage stage(params());

@@ -117,7 +117,7 @@ TEST(CutIntoBatches, EmptyBinsAreLeftOut) {
   EXPECT_EQ(batched->batches[0].count, 0U) << "there is no range to iterate over by mistake";
 }
 
-TEST(CutIntoBatches, NoPoseIsAReasonNotAnIdentity) {
+TEST(CutIntoBatches, W3_W12_NoPoseIsAReasonNotAnIdentity) {
   const auto sweep = sweepAt({0.0F, 0.1F});
   Trajectory late, early, gap;
   late.push({at(1.05), {}});

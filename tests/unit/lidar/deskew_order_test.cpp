@@ -24,7 +24,7 @@ DeskewParams twoLidars() {
 }
 
 // W6: the published program used the newest GNSS pose, up to 50 ms old, for the end of the sweep.
-TEST(DeskewOrder, W6WaitsUntilOdometryCoversTheLastPoint) {
+TEST(DeskewOrder, W6_WaitsUntilOdometryCoversTheLastPoint) {
   const Drive drive;
   DeskewRun run(oneLidar());
   run.rig(drive);

@@ -56,7 +56,7 @@ TEST(Deskew, SweepAtItsStamp) {
 }
 
 // W5: the published program took the travel in world axes for one in vehicle axes: right at heading 0 only.
-TEST(Deskew, W5HeadingHasNoInfluence) {
+TEST(Deskew, W5_HeadingHasNoInfluence) {
   for (const double heading_deg : {0.0, 45.0, 90.0, 180.0, -90.0}) {
     Drive drive;
     drive.yaw_rate_radps = 0.0;
@@ -69,7 +69,7 @@ TEST(Deskew, W5HeadingHasNoInfluence) {
 }
 
 // W4: the published program thinned the cloud before it cut it, after which a batch held points of all times.
-TEST(Deskew, W4BatchesSpanTheirShareOfTheSweep) {
+TEST(Deskew, W4_BatchesSpanTheirShareOfTheSweep) {
   const Drive drive;
   const SeenSweep seen = seeWall(drive, 1.0, 3200);
   const auto batched = deskewOne(drive, seen.sweep, oneLidar(100));
@@ -80,7 +80,7 @@ TEST(Deskew, W4BatchesSpanTheirShareOfTheSweep) {
   }
 }
 
-TEST(Deskew, W4OutputKeepsOrderAndLengthOfTheInput) {
+TEST(Deskew, W4_OutputKeepsOrderAndLengthOfTheInput) {
   const Drive drive;
   SeenSweep seen = seeWall(drive, 1.0, 1000);
   seen.sweep->points[17].x = std::numeric_limits<float>::quiet_NaN();  // no return
@@ -102,7 +102,7 @@ TEST(Deskew, W4OutputKeepsOrderAndLengthOfTheInput) {
 }
 
 // W1: the published program kept the first sweep as "previous sweep" of all others.
-TEST(Deskew, W1EverySweepHasItsOwnPoses) {
+TEST(Deskew, W1_EverySweepHasItsOwnPoses) {
   const Drive drive;
   DeskewRun run(oneLidar(500));
   run.rig(drive);

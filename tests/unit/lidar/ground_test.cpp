@@ -48,15 +48,16 @@ double worst(const GroundGrid& grid, const Height& height, double cx, double cy,
   return result;
 }
 
-TEST(Ground, FlatAnywhereInMap) {
-  for (const double level : {0.0, -12.0, 230.0}) {  // upstream cut at a constant z (W20)
+TEST(Ground, W20_W23_FlatAnywhereInMap) {
+  // The published program cut at a constant z (W20), and found road only at the height of the start (W23).
+  for (const double level : {0.0, -12.0, 230.0}) {
     const Height flat = [level](double, double) { return level; };
     const GroundGrid grid(surface(flat, 500, -300), {500, -300, level + 1.7}, params());
     EXPECT_LT(worst(grid, flat, 500, -300), 0.05);
   }
 }
 
-TEST(Ground, W20SlopesAreGround) {
+TEST(Ground, W20_SlopesAreGround) {
   for (const double slope : {0.05, 0.12, 0.2}) {
     const Height hill = [slope](double x, double y) { return slope * x - 0.5 * slope * y; };
     const GroundGrid grid(surface(hill, 0, 0), {0, 0, 1.7}, params());
@@ -64,7 +65,7 @@ TEST(Ground, W20SlopesAreGround) {
   }
 }
 
-TEST(Ground, W20KerbIsGround) {
+TEST(Ground, W20_KerbIsGround) {
   const Height street = [](double, double y) { return y > 4.0 ? 0.15 : 0.0; };
   const auto points = surface(street, 0, 0);
   const GroundGrid grid(points, {0, 0, 1.7}, params());

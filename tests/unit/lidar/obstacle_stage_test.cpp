@@ -63,7 +63,7 @@ Obstacles found(const Scene& scene, Counters& counters) {
   return findObstacles({scene.seen(1.0)}, Eigen::Vector3d::Zero(), at(1.0), {}, counters);
 }
 
-TEST(FindObstacles, TwoCarsNearEachOtherOnASlopeWithAKerb) {
+TEST(FindObstacles, W20_TwoCarsNearEachOtherOnASlopeWithAKerb) {
   for (const double slope : {0.0, 0.12}) {
     Scene scene;
     scene.slope = slope;
@@ -82,7 +82,7 @@ TEST(FindObstacles, TwoCarsNearEachOtherOnASlopeWithAKerb) {
   }
 }
 
-TEST(FindObstacles, LowThingsAreSeen) {
+TEST(FindObstacles, W20_LowThingsAreSeen) {
   // W20: below 1 m above the road the published program saw nothing
   Scene scene;
   scene.road();

@@ -58,7 +58,7 @@ TEST(OrientedBox, TwoSidesGiveTheWholeCarAtAnyYaw) {
 }
 
 // W21: the published program's boxes began with the fourth point; the first three could lie outside.
-TEST(OrientedBox, W21EveryPointIsInsideItsBox) {
+TEST(OrientedBox, W21_EveryPointIsInsideItsBox) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> coordinate(-3.0, 3.0);
   for (int run = 0; run < 50; ++run) {

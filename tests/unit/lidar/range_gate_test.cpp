@@ -37,7 +37,7 @@ TEST(RangeGate, BoundsBelongToTheBelievedRange) {
 }
 
 TEST(RangeGate, RangeIsEuclideanInThreeDimensions) {
-  // upstream: |x| + |y| > 2 (A6): a point 1.5 m above the sensor was dropped, one at (1.2, 1.2) kept
+  // the published program: |x| + |y| > 2: a point 1.5 m above the sensor was dropped, one at (1.2, 1.2) kept
   auto sweep = std::make_shared<Sweep>();
   sweep->points = {at(0, 0, 2.5F), at(1.2F, 1.2F, 0)};
   const GatedSweep gated = gateByRange(sweep, 2.0, 120.0);

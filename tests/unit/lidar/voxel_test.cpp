@@ -32,7 +32,7 @@ TEST(VoxelOf, NothingOutsideTheNumbers) {
   EXPECT_FALSE(voxelOf(std::numeric_limits<double>::quiet_NaN(), 0, 0, 0.2));
   EXPECT_FALSE(voxelOf(0, std::numeric_limits<double>::infinity(), 0, 0.2));
   EXPECT_FALSE(voxelOf(0, 0, -1e10, 0.2));
-  // upstream's voxel grid gave up (returned its input) beyond 2^31 cells in all (A9); 1000 km are no problem
+  // PCL's voxel grid gave up (returned its input) beyond 2^31 cells in all; 1000 km are no problem
   // here
   EXPECT_TRUE(voxelOf(1e6, -1e6, 1e6, 0.01));
 }

@@ -38,7 +38,7 @@ TEST(HeadingFilter, CorrelatedGnssNoiseIsNotAveragedAwayInASecond) {
   EXPECT_LT(std::sqrt(filter.yawVariance()), 3.0 * kDeg);
 }
 
-TEST(HeadingFilter, NoisyGnssHeadingDoesNotPassOneToOne) {
+TEST(HeadingFilter, W9_NoisyGnssHeadingDoesNotPassOneToOne) {
   HeadingFilter filter({});
   filter.initializeFromGnss(kGnssVariance);
   for (int i = 0; i < 200; ++i) {
@@ -78,7 +78,7 @@ TEST(HeadingFilter, VelocityDominatesGnssAtSpeed) {
   EXPECT_NEAR(yaw, 0.0, 0.2 * kDeg);
 }
 
-TEST(HeadingFilter, DrivingBackwardsDoesNotTurnTheHeading) {
+TEST(HeadingFilter, W9_DrivingBackwardsDoesNotTurnTheHeading) {
   HeadingFilter filter({});
   filter.initializeFromGnss(kGnssVariance);
   filter.predict(1.0);

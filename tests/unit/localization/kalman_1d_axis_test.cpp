@@ -42,7 +42,7 @@ TEST(Kalman1dAxis, SlowErrorOfOneStepByHand) {
   EXPECT_NEAR(axis.covariance()(1, 1), 16.0, 1e-9);
 }
 
-TEST(Kalman1dAxis, VelocityGainIsCrossCovarianceOverWholeInnovationVariance) {
+TEST(Kalman1dAxis, W7_VelocityGainIsCrossCovarianceOverWholeInnovationVariance) {
   // The published program divided element by element, so that its velocity gain was p12/R: 0.500 instead of
   // 0.045.
   Kalman1dAxis axis;
@@ -54,7 +54,7 @@ TEST(Kalman1dAxis, VelocityGainIsCrossCovarianceOverWholeInnovationVariance) {
   EXPECT_NEAR(axis.velocity(), 0.045, 5e-4);
 }
 
-TEST(Kalman1dAxis, TenMetresPerSecondFromUnknownVelocityIsFoundAtOnce) {
+TEST(Kalman1dAxis, W7_TenMetresPerSecondFromUnknownVelocityIsFoundAtOnce) {
   // The published filter was 1.25 m off and at -2.4 m/s in the first second.
   Kalman1dAxis axis;
   axis.initialize(0.0, 4e-4, 0.0, 900.0, kNoBias);
@@ -66,7 +66,7 @@ TEST(Kalman1dAxis, TenMetresPerSecondFromUnknownVelocityIsFoundAtOnce) {
   }
 }
 
-TEST(Kalman1dAxis, NoiseDoesNotDependOnTheRate) {
+TEST(Kalman1dAxis, W8_NoiseDoesNotDependOnTheRate) {
   const auto after = [](int steps, double bias_variance) {
     Kalman1dAxis axis;
     axis.initialize(0.0, 0.01, 0.0, 0.04, bias_variance);
@@ -96,7 +96,7 @@ TEST(Kalman1dAxis, ShiftMovesAndAddsUncertainty) {
   EXPECT_DOUBLE_EQ(axis.covariance()(0, 0), 3.25);
 }
 
-TEST(Kalman1dAxis, StaysSymmetricAndPositiveUnderTinyMeasurementNoise) {
+TEST(Kalman1dAxis, W7_StaysSymmetricAndPositiveUnderTinyMeasurementNoise) {
   Kalman1dAxis axis;
   axis.initialize(0.0, 1e6, 0.0, 1e6, 1e-3);
   for (int i = 0; i < 20000; ++i) {

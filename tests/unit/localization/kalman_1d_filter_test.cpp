@@ -49,7 +49,7 @@ TEST(Kalman1dFilter, ExactSensorsGiveTheExactTrajectory) {
   }
 }
 
-TEST(Kalman1dFilter, TurningOnTheSpotLeavesTheImuStill) {
+TEST(Kalman1dFilter, W10_TurningOnTheSpotLeavesTheImuStill) {
   // The published program moved the imu by 1.032 m here: its lever arm was not rotated.
   DriveParams d;
   d.duration_s = 20.0;
@@ -67,7 +67,7 @@ TEST(Kalman1dFilter, TurningOnTheSpotLeavesTheImuStill) {
   EXPECT_NEAR(std::abs(wrapAngle(yawOf(r.odometry.back()) - yawOf(r.odometry.front()))), M_PI, 0.1 * kDeg);
 }
 
-TEST(Kalman1dFilter, HeadingLostAtStandstillIsHeldByTheGyroscope) {
+TEST(Kalman1dFilter, W9_HeadingLostAtStandstillIsHeldByTheGyroscope) {
   // The published program jumped to north within one packet.
   DriveParams d;
   d.duration_s = 70.0;
@@ -102,7 +102,7 @@ TEST(Kalman1dFilter, AWrongFirstHeadingIsCorrectedByTheFollowingOnes) {
   EXPECT_EQ(r.counters.get("heading re-initialized after outliers"), 0U) << "corrected, not started anew";
 }
 
-TEST(Kalman1dFilter, GnssPauseLeavesOdometryAtImuRate) {
+TEST(Kalman1dFilter, W3_GnssPauseLeavesOdometryAtImuRate) {
   Simulated s = simulate(cityDrive(40.0), noErrors());
   const Stamp from = s.truth[0].stamp + 15 * kSecond, to = from + 5 * kSecond;
   dropFixes(s.recording, [&](Stamp stamp) { return stamp > from && stamp < to; });
@@ -119,7 +119,7 @@ TEST(Kalman1dFilter, GnssPauseLeavesOdometryAtImuRate) {
   EXPECT_EQ(r.counters.get("skipped fix: outlier"), 0U);
 }
 
-TEST(Kalman1dFilter, PositionIsThatOfItsOwnStamp) {
+TEST(Kalman1dFilter, W6_PositionIsThatOfItsOwnStamp) {
   // W6: at 20 m/s the published program was up to a whole GNSS period, one metre, behind.
   DriveParams d;
   d.duration_s = 10.0;
@@ -130,7 +130,7 @@ TEST(Kalman1dFilter, PositionIsThatOfItsOwnStamp) {
   for (const PoseError& e : all) ASSERT_LT(horizontal(e), 0.01) << e.time_s;
 }
 
-TEST(Kalman1dFilter, ReverseDrivingKeepsTheHeading) {
+TEST(Kalman1dFilter, W9_ReverseDrivingKeepsTheHeading) {
   DriveParams d = cityDrive(40.0, 5.0);
   const auto forward = d.speed;
   d.speed = [forward](double t) { return -forward(t); };
@@ -146,7 +146,7 @@ TEST(Kalman1dFilter, ReverseDrivingKeepsTheHeading) {
   EXPECT_LT(r.odometry[2000].velocity_imu_mps.x(), -3.0);
 }
 
-TEST(Kalman1dFilter, UnknownIsUnknown) {
+TEST(Kalman1dFilter, W12_UnknownIsUnknown) {
   const Simulated standing = [] {
     DriveParams d;
     d.duration_s = 10.0;
@@ -227,7 +227,7 @@ TEST(Kalman1dFilter, ImuGapRestartsAndSaysSo) {
   EXPECT_LT(rms(all, 14.0, 30.0, horizontal), 0.01);
 }
 
-TEST(Kalman1dFilter, WanderingAccelerometerBiasDoesNotPullTheRtkAway) {
+TEST(Kalman1dFilter, W8_WanderingAccelerometerBiasDoesNotPullTheRtkAway) {
   // W8: an IMU bias of 0.1 m/s^2 gave 0.137 m and 0.163 m/s in the published program.
   DriveParams d;
   d.duration_s = 30.0;
@@ -258,7 +258,7 @@ TEST(Kalman1dFilter, CovariancesAreSymmetricPositiveAndInTheRightFrame) {
   EXPECT_GT(V(1, 1), V(0, 0));
 }
 
-TEST(Kalman1dFilter, FourTimesTheImuRateIsTheSameFilter) {
+TEST(Kalman1dFilter, W8_FourTimesTheImuRateIsTheSameFilter) {
   DriveParams d = cityDrive(30.0);
   const Simulated slow = simulate(d, noErrors());
   d.imu_rate_hz = 400.0;

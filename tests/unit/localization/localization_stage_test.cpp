@@ -108,7 +108,7 @@ TEST(LocalizationStage, AnchorIsTheFirstFixOnce) {
   EXPECT_EQ(r.counters.get("skipped fix: not finite"), 1U);
 }
 
-TEST(LocalizationStage, AThousandMetresAreAThousandMetres) {
+TEST(LocalizationStage, W11_AThousandMetresAreAThousandMetres) {
   // W11: the published program lost 3.07 m east and 0.23 m north of every kilometre. Reference: the
   // ellipsoid's radii of curvature at 49.2281 deg and 281 m (WGS84): N cos(lat) and M.
   const double lat = kBrno.latitude_deg * M_PI / 180.0, e2 = 0.00669437999014;

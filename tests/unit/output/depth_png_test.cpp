@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-TEST(DepthPng, unitsAreMetresTimes256) {
+TEST(DepthPng, W18_unitsAreMetresTimes256AndZeroIsUnknown) {
   const cv::Mat depth = (cv::Mat_<float>(1, 8) << 1.0F, 20.5F, kNan, 0.0F, -3.0F, 255.99F, 256.0F, 1e30F);
   const cv::Mat units = depthTo16Bit(depth);
   ASSERT_EQ(units.type(), CV_16UC1);
@@ -21,7 +21,7 @@ TEST(DepthPng, unitsAreMetresTimes256) {
     EXPECT_EQ(units.at<std::uint16_t>(0, i), expected[static_cast<std::size_t>(i)]) << i;
 }
 
-TEST(DepthPng, infinityIsUnknown) {
+TEST(DepthPng, W18_infinityIsUnknown) {
   const cv::Mat depth = (cv::Mat_<float>(1, 1) << std::numeric_limits<float>::infinity());
   EXPECT_EQ(depthTo16Bit(depth).at<std::uint16_t>(0, 0), 0);
 }

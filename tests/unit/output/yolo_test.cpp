@@ -17,13 +17,13 @@ Detections one(double x_min, double y_min, double x_max, double y_max, std::int3
 
 // W16: x by the width, y by the height. The published program divides the height of the box by the image's
 // width: 64 / 640.
-TEST(Yolo, everyNumberIsDividedByItsOwnDimension) {
+TEST(Yolo, W16_everyNumberIsDividedByItsOwnDimension) {
   // centre (160, 128), size 64 x 64 in 640 x 512
   EXPECT_EQ(yoloLabels(one(128, 96, 192, 160), 640, 512), "2 0.250000 0.250000 0.100000 0.125000\n");
 }
 
 // W16: y clipped by the height, not by the width (a box down to row 600 of 512 stays legal when cut at 640).
-TEST(Yolo, clippedToTheImage) {
+TEST(Yolo, W16_clippedToTheImage) {
   EXPECT_EQ(yoloLabels(one(-100, 256, 64, 600), 640, 512), "2 0.050000 0.750000 0.100000 0.500000\n");
   EXPECT_EQ(yoloLabels(one(-10, -10, 1000, 1000), 640, 512), "2 0.500000 0.500000 1.000000 1.000000\n");
 }
