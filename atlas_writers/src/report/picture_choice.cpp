@@ -139,17 +139,23 @@ std::optional<Picture> chooseDepth(const fs::path& out) {
   return std::nullopt;
 }
 
+/// The overlay with the most lidar points: its depth image, of the same camera and number, is the fullest.
 std::optional<Picture> chooseOverlay(const fs::path& out) {
-  std::vector<fs::path> folders = foldersOf(out / "overlay");
-  folders.push_back(out / "overlay");
-  for (const fs::path& folder : folders) {
-    const std::vector<fs::path> files = filesOf(folder, ".png");
-    if (files.empty()) continue;
-    const fs::path& file = files[files.size() / 2];
-    const cv::Mat pixels = cv::imread(file.string(), cv::IMREAD_COLOR);
-    if (!pixels.empty())
-      return Picture{pixels, "Camera overlay " + fs::relative(file, out / "overlay").string() +
-                                 ": lidar depth, detections with their distance"};
+  for (const fs::path& folder : foldersOf(out / "overlay")) {
+    int most = -1;
+    std::optional<fs::path> best;
+    for (const fs::path& file : spread(filesOf(folder, ".png"), 9)) {
+      const fs::path depth_file = out / "depth" / folder.filename() / file.filename();
+      const cv::Mat depth =
+          fs::exists(depth_file) ? cv::imread(depth_file.string(), cv::IMREAD_UNCHANGED) : cv::Mat();
+      const int known = depth.type() == CV_16UC1 ? cv::countNonZero(depth) : 0;
+      if (known > most) most = known, best = file;
+    }
+    if (!best) continue;
+    const cv::Mat pixels = cv::imread(best->string(), cv::IMREAD_COLOR);
+    if (pixels.empty()) continue;
+    return Picture{pixels, "Camera overlay " + fs::relative(*best, out / "overlay").string() +
+                               ": lidar depth, detections with their distance"};
   }
   return std::nullopt;
 }
