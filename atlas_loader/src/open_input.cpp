@@ -3,6 +3,7 @@
 
 #include <ros/package.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "atlas_ros/bag_reader.hpp"
@@ -22,8 +23,8 @@ atlas::RecordOptions::Images imagesFrom(const std::string& text) {
 
 std::unique_ptr<atlas::RecordReader> openInput(const InputOptions& options) {
   if (options.bag.empty() == options.record.empty()) {
-    throw std::invalid_argument("name one input: a bag or a record, got bag '" + options.bag + "' and record '" +
-                                options.record + "'");
+    throw std::invalid_argument("name one input: a bag or a record, got bag '" + options.bag +
+                                "' and record '" + options.record + "'");
   }
   if (!options.bag.empty()) {
     atlas_ros::BagOptions bag;
@@ -43,10 +44,10 @@ std::unique_ptr<atlas::RecordReader> openInput(const InputOptions& options) {
 }
 
 std::string configurationFor(const std::vector<atlas::StreamInfo>& streams) {
-  for (const atlas::StreamInfo& stream : streams) {
-    if (stream.topic == "velodyne/points") return "kitti";
-  }
-  return "bud";
+  const auto is_of_kitti = [](const atlas::StreamInfo& stream) {
+    return stream.topic.rfind("velodyne/", 0) == 0 || stream.topic.rfind("image_0", 0) == 0;
+  };
+  return std::any_of(streams.begin(), streams.end(), is_of_kitti) ? "kitti" : "bud";
 }
 
 std::string packageFile(const std::string& package, const std::string& relative) {

@@ -131,7 +131,7 @@ atlas::RunSummary replay(const ReplayOptions& options) {
   summary.inputs.push_back(atlas::hashInput(options.input.bag.empty() ? options.input.record : options.input.bag));
   std::signal(SIGINT, [](int) { g_interrupted = true; });
   std::signal(SIGTERM, [](int) { g_interrupted = true; });
-  ProgressBar bar("replaying", reader->span());
+  ProgressBar bar("replaying", requestedSpan(reader->span(), options.input));
   constexpr atlas::Duration kAdvanceStep = 5 * atlas::kMillisecond;  // of event time; no influence on results
   atlas::Stamp advanced = atlas::kBeginOfTime, first = 0, last = 0;
   while (!g_interrupted) {
