@@ -59,19 +59,23 @@ void drawBox(cv::Mat& image, const Detection2d& box, const std::string& label) {
 cv::Mat drawDepth(const cv::Mat& image, const cv::Mat& depth_m, double max_depth_m) {
   if (image.size() != depth_m.size())
     throw std::invalid_argument("overlay: depth must have the image's size");
-  cv::Mat picture = colorCopy(image);
-  cv::Mat scale(256, 1, CV_8UC1), colors;
+  constexpr double kNear_m = 2.0;  // where the colours begin; equal ratios of depth are equal steps of colour
+  constexpr double kShare = 0.55;  // of the dot's colour, the rest is the picture below it
+  const cv::Mat below = colorCopy(image);
+  cv::Mat picture = below.clone(), scale(256, 1, CV_8UC1), colors;
   for (int i = 0; i < 256; ++i) scale.at<std::uint8_t>(i) = static_cast<std::uint8_t>(255 - i);
-  cv::applyColorMap(scale, colors, cv::COLORMAP_JET);
+  cv::applyColorMap(scale, colors, cv::COLORMAP_TURBO);
   for (int row = 0; row < depth_m.rows; ++row) {
     const float* depth = depth_m.ptr<float>(row);
     for (int column = 0; column < depth_m.cols; ++column) {
       if (!(depth[column] > 0.0F)) continue;
-      const double share = std::min(1.0, depth[column] / max_depth_m);
-      const auto& color = colors.at<cv::Vec3b>(static_cast<int>(255.0 * share));
-      cv::circle(picture, {column, row}, 1, cv::Scalar(color[0], color[1], color[2]), cv::FILLED);
+      const double share = std::log(depth[column] / kNear_m) / std::log(max_depth_m / kNear_m);
+      const auto& color = colors.at<cv::Vec3b>(static_cast<int>(255.0 * std::clamp(share, 0.0, 1.0)));
+      cv::circle(picture, {column, row}, image.cols > 1500 ? 1 : 0, cv::Scalar(color[0], color[1], color[2]),
+                 cv::FILLED);
     }
   }
+  cv::addWeighted(picture, kShare, below, 1.0 - kShare, 0.0, picture);
   return picture;
 }
 

@@ -8,8 +8,8 @@
 
 namespace atlas {
 
-/// Lidar points as dots, red near to blue at max_depth_m. `depth_m`: CV_32FC1 of the image's size, NaN
-/// unknown (sparse).
+/// Lidar points as half transparent dots, red at 2 m to blue at max_depth_m (logarithmic). `depth_m`:
+/// CV_32FC1 of the image's size, NaN unknown (sparse).
 cv::Mat drawDepth(const cv::Mat& image, const cv::Mat& depth_m, double max_depth_m = 60.0);
 /// Boxes with class and distance.
 cv::Mat drawFrustums(const cv::Mat& image, const Frustums& frustums);
