@@ -9,7 +9,8 @@ namespace atlas_fusion {
 class DepthNodelet : public atlas_ros::StageNodelet<atlas::DepthParams> {
   atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::DepthParams& params) override {
     for (const std::string& camera : params.cameras) {
-      infos_.push_back(getNodeHandle().advertise<sensor_msgs::CameraInfo>(camera + "/depth/camera_info", atlas_ros::kKeepAll));
+      infos_.push_back(getNodeHandle().advertise<sensor_msgs::CameraInfo>(camera + "/depth/camera_info",
+                                                                          atlas_ros::kKeepAll));
     }
     const atlas::StageFactory factory = atlas::bindDepth(link, params);
     return [this, factory] {

@@ -10,13 +10,15 @@ namespace atlas_lidar {
 class DeskewNodelet : public atlas_ros::StageNodelet<atlas::DeskewParams> {
   atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::DeskewParams& params) override {
     for (const std::string& lidar : params.lidars) {
-      clouds_.push_back(getNodeHandle().advertise<sensor_msgs::PointCloud2>(lidar + "/points_deskewed", atlas_ros::kKeepAll));
+      clouds_.push_back(getNodeHandle().advertise<sensor_msgs::PointCloud2>(lidar + "/points_deskewed",
+                                                                            atlas_ros::kKeepAll));
     }
     const atlas::StageFactory factory = atlas::bindDeskew(link, params);
     return [this, factory] {
       auto stage = factory();
       auto& deskew = static_cast<atlas::DeskewStage&>(*stage);
-      deskew.on_batches = [this, emit = deskew.on_batches](std::size_t lidar, const atlas::BatchedSweepPtr& batched) {
+      deskew.on_batches = [this, emit = deskew.on_batches](std::size_t lidar,
+                                                           const atlas::BatchedSweepPtr& batched) {
         emit(lidar, batched);
         publishCloud(lidar, *batched);
       };
@@ -26,7 +28,8 @@ class DeskewNodelet : public atlas_ros::StageNodelet<atlas::DeskewParams> {
 
   /// Not an input of any stage: only made when somebody listens.
   void publishCloud(std::size_t lidar, const atlas::BatchedSweep& batched) {
-    if (clouds_[lidar].getNumSubscribers() > 0) clouds_[lidar].publish(atlas_ros::toMsg(atlas::deskewed(batched)));
+    if (clouds_[lidar].getNumSubscribers() > 0)
+      clouds_[lidar].publish(atlas_ros::toMsg(atlas::deskewed(batched)));
   }
 
   std::vector<ros::Publisher> clouds_;

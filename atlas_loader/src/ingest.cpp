@@ -29,7 +29,8 @@ void Ingest::endEpoch() {
 void Ingest::push(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload) {
   ++received_;
   const bool is_static = streams_[stream].kind == atlas::StreamKind::kStaticTransforms;
-  if (!is_static && newest_of_[stream] != atlas::kBeginOfTime && stamp < newest_of_[stream] - atlas::kSecond) {
+  if (!is_static && newest_of_[stream] != atlas::kBeginOfTime &&
+      stamp < newest_of_[stream] - atlas::kSecond) {
     endEpoch();
     put({Item::Kind::kEndOfEpoch, std::nullopt});
     startEpoch();
@@ -58,7 +59,8 @@ void Ingest::pushToMerge(std::size_t stream, atlas::Stamp order, atlas::Stamp st
 bool Ingest::isKnown(const atlas::Payload& payload) const {
   const auto& transforms = std::get<atlas::StaticTransforms>(payload).transforms;
   const auto same = [](const atlas::StaticTransform& a, const atlas::StaticTransform& b) {
-    return a.parent == b.parent && a.child == b.child && a.T_parent_child.translation == b.T_parent_child.translation &&
+    return a.parent == b.parent && a.child == b.child &&
+           a.T_parent_child.translation == b.T_parent_child.translation &&
            a.T_parent_child.rotation.coeffs() == b.T_parent_child.rotation.coeffs();
   };
   return std::any_of(transforms_.begin(), transforms_.end(), [&](const auto& entry) {
@@ -67,7 +69,8 @@ bool Ingest::isKnown(const atlas::Payload& payload) const {
   });
 }
 
-/// Static transforms may arrive after the first measurements (another connection), so they get max_delay from the oldest one.
+/// Static transforms may arrive after the first measurements (another connection), so they get max_delay from
+/// the oldest one.
 void Ingest::advanceSilent() {
   const bool static_known = newest_ - oldest_ >= max_delay_;
   for (std::size_t i = 0; i < streams_.size(); ++i) {
@@ -113,16 +116,26 @@ std::uint64_t Ingest::late() const {
 std::optional<atlas::StreamKind> kindOfTopicName(const std::string& topic) {
   using atlas::StreamKind;
   static const std::vector<std::pair<std::string, StreamKind>> kEndings = {
-      {"tf_static", StreamKind::kStaticTransforms}, {"imu/data", StreamKind::kImu},
-      {"gnss/heading", StreamKind::kGnssHeading},   {"gnss/fix", StreamKind::kGnssFix},
-      {"/points", StreamKind::kPoints},             {"/camera_info", StreamKind::kCameraInfo},
-      {"/packets", StreamKind::kVideoPackets},      {"/image_raw/compressed", StreamKind::kCompressedImage},
-      {"/image_raw", StreamKind::kImage},           {"/detections", StreamKind::kDetections},
-      {"/temperature_range", StreamKind::kTemperatureRange}, {"/scan", StreamKind::kRadar},
-      {"imu/mag", StreamKind::kMagnetic},           {"imu/pressure", StreamKind::kPressure},
-      {"imu/temperature", StreamKind::kTemperature}, {"/time", StreamKind::kTimeReference}};
+      {"tf_static", StreamKind::kStaticTransforms},
+      {"imu/data", StreamKind::kImu},
+      {"gnss/heading", StreamKind::kGnssHeading},
+      {"gnss/fix", StreamKind::kGnssFix},
+      {"/points", StreamKind::kPoints},
+      {"/camera_info", StreamKind::kCameraInfo},
+      {"/packets", StreamKind::kVideoPackets},
+      {"/image_raw/compressed", StreamKind::kCompressedImage},
+      {"/image_raw", StreamKind::kImage},
+      {"/detections", StreamKind::kDetections},
+      {"/temperature_range", StreamKind::kTemperatureRange},
+      {"/scan", StreamKind::kRadar},
+      {"imu/mag", StreamKind::kMagnetic},
+      {"imu/pressure", StreamKind::kPressure},
+      {"imu/temperature", StreamKind::kTemperature},
+      {"/time", StreamKind::kTimeReference}};
   for (const auto& [ending, kind] : kEndings) {
-    if (topic.size() >= ending.size() && topic.compare(topic.size() - ending.size(), ending.size(), ending) == 0) return kind;
+    if (topic.size() >= ending.size() &&
+        topic.compare(topic.size() - ending.size(), ending.size(), ending) == 0)
+      return kind;
   }
   return std::nullopt;
 }

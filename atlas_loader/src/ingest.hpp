@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Brings messages that arrive on topics in any order (rosbag play, other nodes) into the order of their stamps, for the graph.
-// A stream that is silent for `max_delay_s` of event time is not waited for; what comes later than that is counted as late.
+// Brings messages that arrive on topics in any order (rosbag play, other nodes) into the order of their
+// stamps, for the graph. A stream that is silent for `max_delay_s` of event time is not waited for; what
+// comes later than that is counted as late.
 #pragma once
 
 #include <condition_variable>
@@ -26,7 +27,8 @@ class Ingest {
 
   Ingest(std::vector<atlas::StreamInfo> streams, atlas::Duration max_delay);
 
-  /// A message of `stream`. A stamp more than a second before the newest of its stream begins a new epoch (a bag that loops).
+  /// A message of `stream`. A stamp more than a second before the newest of its stream begins a new epoch (a
+  /// bag that loops).
   void push(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload);
   /// Every publisher has gone: nothing more will come.
   void finish();
@@ -48,7 +50,8 @@ class Ingest {
   std::vector<atlas::StreamInfo> streams_;
   atlas::Duration max_delay_;
   std::unique_ptr<atlas::EventMerge> merge_;
-  std::vector<std::pair<std::size_t, atlas::Event>> transforms_;  ///< static ones by stream; given again to each epoch
+  std::vector<std::pair<std::size_t, atlas::Event>>
+      transforms_;                       ///< static ones by stream; given again to each epoch
   std::vector<atlas::Stamp> newest_of_;  ///< per stream
   atlas::Stamp newest_ = atlas::kBeginOfTime, oldest_ = atlas::kBeginOfTime;  ///< of this epoch
   std::uint64_t late_before_ = 0, received_ = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Nodelet: the source of the graph when the data comes from topics (`rosbag play --clock`, other nodes) and not from our player.
+// Nodelet: the source of the graph when the data comes from topics (`rosbag play --clock`, other nodes) and
+// not from our player.
 #include <nodelet/nodelet.h>
 
 #include <atomic>
@@ -36,7 +37,8 @@ class IngestNodelet : public nodelet::Nodelet {
     params.readOptional("out", out_);
     params.readOptional("exit_at_end", exit_at_end_);
     params.rejectUnread();
-    if (!(max_delay_s > 0)) throw std::invalid_argument("max_delay_s must be positive, got " + std::to_string(max_delay_s));
+    if (!(max_delay_s > 0))
+      throw std::invalid_argument("max_delay_s must be positive, got " + std::to_string(max_delay_s));
     max_delay_ = atlas::fromSeconds(max_delay_s);
     source_ = std::make_unique<RunSource>(getNodeHandle(), source);
     watch_ = getNodeHandle().createWallTimer(ros::WallDuration(0.1), &IngestNodelet::onWatch, this);
@@ -80,8 +82,8 @@ class IngestNodelet : public nodelet::Nodelet {
             })));
   }
 
-  /// The end of the data: publishers were there and have gone. Seen twice in a row in the callback queue, so that every message
-  /// that arrived before has been handled.
+  /// The end of the data: publishers were there and have gone. Seen twice in a row in the callback queue, so
+  /// that every message that arrived before has been handled.
   void onWatch(const ros::WallTimerEvent&) {
     if (!subscribed_) return;
     bool any = false;
@@ -122,8 +124,10 @@ class IngestNodelet : public nodelet::Nodelet {
     const bool looped = item && item->kind == Ingest::Item::Kind::kEndOfEpoch;
     if (looped) NODELET_WARN("time jumped back: the stages begin afresh (epoch %u)", epoch + 1);
     ok = ok && source_->end();
-    for (const auto& [what, count] : skipped_) report.note("skipped " + std::to_string(count) + " of " + what);
-    if (ingest_->late() > 0) report.note(std::to_string(ingest_->late()) + " messages came too late for their place in time");
+    for (const auto& [what, count] : skipped_)
+      report.note("skipped " + std::to_string(count) + " of " + what);
+    if (ingest_->late() > 0)
+      report.note(std::to_string(ingest_->late()) + " messages came too late for their place in time");
     report.finish(*source_, nullptr, ok);
     for (const std::string& line : report.lines()) NODELET_INFO("%s", line.c_str());
     return ok && (looped || !exit_at_end_);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Nodelet: plays a bag or a record into the graph, paced by the progress of the stages (rate 0: as fast as they go).
+// Nodelet: plays a bag or a record into the graph, paced by the progress of the stages (rate 0: as fast as
+// they go).
 #include <nodelet/nodelet.h>
 #include <rosgraph_msgs/Clock.h>
 #include <std_srvs/SetBool.h>
@@ -14,8 +15,8 @@
 #include "atlas_ros/conversions.hpp"
 #include "atlas_ros/param_reader.hpp"
 #include "open_input.hpp"
-#include "run_source.hpp"
 #include "run_report.hpp"
+#include "run_source.hpp"
 
 namespace atlas_loader {
 
@@ -43,7 +44,8 @@ class PlayerNodelet : public nodelet::Nodelet {
     params.readOptional("lead_s", source.lead_s);
     params.readOptional("graph_timeout_s", source.graph_timeout_s);
     params.rejectUnread();
-    if (!(rate_ >= 0.0)) throw std::invalid_argument("rate must not be negative, got " + std::to_string(rate_));
+    if (!(rate_ >= 0.0))
+      throw std::invalid_argument("rate must not be negative, got " + std::to_string(rate_));
     reader_ = openInput(input_);
     source_ = std::make_unique<RunSource>(getNodeHandle(), source);
     source_->advertise(reader_->streams());
@@ -115,7 +117,8 @@ class PlayerNodelet : public nodelet::Nodelet {
         continue;
       }
       if (rate_ <= 0.0) return true;
-      const auto due = begin + std::chrono::nanoseconds(static_cast<std::int64_t>(static_cast<double>(since_first) / rate_));
+      const auto due = begin + std::chrono::nanoseconds(
+                                   static_cast<std::int64_t>(static_cast<double>(since_first) / rate_));
       const auto left = due - std::chrono::steady_clock::now();
       if (left <= std::chrono::nanoseconds(0)) return true;
       std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(left, std::chrono::milliseconds(100)));

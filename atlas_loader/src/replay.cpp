@@ -117,9 +117,10 @@ void feed(atlas::LocalGraph& graph, const atlas::StreamInfo& stream, const atlas
 atlas::RunSummary replay(const ReplayOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const auto reader = openInput(options.input);
-  const std::string config = !options.config.empty()
-                                 ? options.config
-                                 : packageFile("atlas_bringup", "config/" + configurationFor(reader->streams()) + ".yaml");
+  const std::string config =
+      !options.config.empty()
+          ? options.config
+          : packageFile("atlas_bringup", "config/" + configurationFor(reader->streams()) + ".yaml");
   Configuration configuration(config);
   std::filesystem::create_directories(options.out);
   atlas::LocalGraph graph;
@@ -128,7 +129,8 @@ atlas::RunSummary replay(const ReplayOptions& options) {
   atlas::RunSummary summary;
   summary.mode = "offline";
   summary.configuration = configuration.json();
-  summary.inputs.push_back(atlas::hashInput(options.input.bag.empty() ? options.input.record : options.input.bag));
+  summary.inputs.push_back(
+      atlas::hashInput(options.input.bag.empty() ? options.input.record : options.input.bag));
   std::signal(SIGINT, [](int) { g_interrupted = true; });
   std::signal(SIGTERM, [](int) { g_interrupted = true; });
   ProgressBar bar("replaying", requestedSpan(reader->span(), options.input));
@@ -142,7 +144,8 @@ atlas::RunSummary replay(const ReplayOptions& options) {
     const atlas::StreamInfo& stream = reader->streams()[event->stream];
     feed(graph, stream, *event);
     ++summary.streams[stream.topic];
-    if (event->stream != 0 && (advanced == atlas::kBeginOfTime || event->stamp - 1 >= advanced + kAdvanceStep)) {
+    if (event->stream != 0 &&
+        (advanced == atlas::kBeginOfTime || event->stamp - 1 >= advanced + kAdvanceStep)) {
       advanced = event->stamp - 1;
       graph.advance(advanced);
     }

@@ -17,8 +17,9 @@ struct ReplayOptions {
   std::vector<std::string> write;  ///< extra outputs: "deskewed"
 };
 
-/// Runs to the end of the input, or until interrupted (then the summary is not complete, the outputs are closed and valid).
-/// Throws std::invalid_argument for bad options and configurations, std::runtime_error for unreadable input.
+/// Runs to the end of the input, or until interrupted (then the summary is not complete, the outputs are
+/// closed and valid). Throws std::invalid_argument for bad options and configurations, std::runtime_error for
+/// unreadable input.
 atlas::RunSummary replay(const ReplayOptions& options);
 
 }  // namespace atlas_loader

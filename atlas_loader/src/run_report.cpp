@@ -14,10 +14,14 @@ using nlohmann::json;
 json toTree(const XmlRpc::XmlRpcValue& constant) {
   XmlRpc::XmlRpcValue value = constant;  // its accessors are not const
   switch (value.getType()) {
-    case XmlRpc::XmlRpcValue::TypeBoolean: return static_cast<bool>(value);
-    case XmlRpc::XmlRpcValue::TypeInt: return static_cast<int>(value);
-    case XmlRpc::XmlRpcValue::TypeDouble: return static_cast<double>(value);
-    case XmlRpc::XmlRpcValue::TypeString: return static_cast<std::string>(value);
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return static_cast<bool>(value);
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return static_cast<int>(value);
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return static_cast<double>(value);
+    case XmlRpc::XmlRpcValue::TypeString:
+      return static_cast<std::string>(value);
     case XmlRpc::XmlRpcValue::TypeArray: {
       json list = json::array();
       for (int i = 0; i < value.size(); ++i) list.push_back(toTree(value[i]));
@@ -28,17 +32,21 @@ json toTree(const XmlRpc::XmlRpcValue& constant) {
       for (auto& [key, entry] : value) map[key] = toTree(entry);
       return map;
     }
-    default: return nullptr;
+    default:
+      return nullptr;
   }
 }
 
-bool startsWith(const std::string& text, const std::string& begin) { return text.compare(0, begin.size(), begin) == 0; }
+bool startsWith(const std::string& text, const std::string& begin) {
+  return text.compare(0, begin.size(), begin) == 0;
+}
 
 }  // namespace
 
 std::string toJson(const XmlRpc::XmlRpcValue& value) { return toTree(value).dump(); }
 
-RunReport::RunReport(const InputOptions& input, std::string out, const std::string& mode) : out_(std::move(out)) {
+RunReport::RunReport(const InputOptions& input, std::string out, const std::string& mode)
+    : out_(std::move(out)) {
   summary_.mode = mode;
   for (const std::string& path : {input.bag, input.record}) {
     if (!path.empty() && !out_.empty()) summary_.inputs.push_back(atlas::hashInput(path));
@@ -72,14 +80,16 @@ std::vector<std::string> RunReport::summaryLines(const atlas::RunSummary& summar
   std::uint64_t events = 0;
   for (const auto& [topic, count] : summary.streams) events += count;
   std::ostringstream total;
-  total << (summary.complete ? "complete" : "INCOMPLETE (" + summary.failure + ")") << ": " << events << " events, ";
+  total << (summary.complete ? "complete" : "INCOMPLETE (" + summary.failure + ")") << ": " << events
+        << " events, ";
   total.precision(1);
-  total << std::fixed << summary.data_s << " s of data in " << summary.wall_s << " s, " << summary.cpu_s << " s of CPU, "
-        << summary.peak_rss_mb << " MB at most";
+  total << std::fixed << summary.data_s << " s of data in " << summary.wall_s << " s, " << summary.cpu_s
+        << " s of CPU, " << summary.peak_rss_mb << " MB at most";
   lines.push_back(total.str());
   for (const auto& [name, file] : summary.files) {
     for (const auto& [reason, count] : file.skipped) {
-      lines.push_back("  " + name + ": " + std::to_string(count) + " of " + std::to_string(file.rows) + " skipped: " + reason);
+      lines.push_back("  " + name + ": " + std::to_string(count) + " of " + std::to_string(file.rows) +
+                      " skipped: " + reason);
     }
   }
   for (const auto& [stage, counters] : summary.stages) {

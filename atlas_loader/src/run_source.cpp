@@ -15,11 +15,13 @@ namespace {
 constexpr const char* kSourceName = "source";
 constexpr atlas::Duration kPromiseStep = 20 * atlas::kMillisecond;  // of event time
 constexpr std::chrono::milliseconds kPoll(100);
-constexpr std::chrono::seconds kPatience(10);  // of wall time before a stage that everything waits for is named
+constexpr std::chrono::seconds kPatience(
+    10);  // of wall time before a stage that everything waits for is named
 }  // namespace
 
 void validate(const RunSourceParams& params) {
-  if (!(params.lead_s >= 0.5)) throw std::invalid_argument("lead_s must be at least 0.5, got " + std::to_string(params.lead_s));
+  if (!(params.lead_s >= 0.5))
+    throw std::invalid_argument("lead_s must be at least 0.5, got " + std::to_string(params.lead_s));
   if (params.stages.empty()) throw std::invalid_argument("stages: at least one stage is needed");
 }
 
@@ -31,7 +33,8 @@ std::string missingInGraph(const std::vector<std::string>& expected_stages,
   for (const auto& [consumer_name, consumer] : hellos) {
     for (const std::string& topic : consumer.inputs) {
       for (const auto& [producer_name, producer] : hellos) {
-        const bool produces = std::find(producer.outputs.begin(), producer.outputs.end(), topic) != producer.outputs.end();
+        const bool produces =
+            std::find(producer.outputs.begin(), producer.outputs.end(), topic) != producer.outputs.end();
         if (!produces || producer.process == consumer.process) continue;
         const std::string link = topic + " " + consumer.process;
         if (std::find(producer.links.begin(), producer.links.end(), link) == producer.links.end()) {
@@ -43,7 +46,8 @@ std::string missingInGraph(const std::vector<std::string>& expected_stages,
   return "";
 }
 
-RunSource::RunSource(const ros::NodeHandle& handle, const RunSourceParams& params) : handle_(handle), params_(params) {
+RunSource::RunSource(const ros::NodeHandle& handle, const RunSourceParams& params)
+    : handle_(handle), params_(params) {
   validate(params);
   atlas_msgs::StageHello& self = hellos_[kSourceName];
   self.stage = kSourceName;
@@ -78,7 +82,8 @@ void RunSource::advertise(const std::vector<atlas::StreamInfo>& streams) {
     atlas_ros::withMessageType(stream.kind, [&](auto* type) {
       using Message = std::remove_pointer_t<decltype(type)>;
       publishers_.push_back(handle_.advertise<Message>(
-          stream.topic, 0, [this, topic](const ros::SingleSubscriberPublisher& s) { addLink(topic, s.getSubscriberName()); }));
+          stream.topic, 0,
+          [this, topic](const ros::SingleSubscriberPublisher& s) { addLink(topic, s.getSubscriberName()); }));
     });
   }
 }
@@ -97,7 +102,8 @@ void RunSource::onProgress(const atlas_msgs::StageProgressConstPtr& msg) {
     StageReport& stage = stages_[msg->stage];
     stage.reached = msg->watermark_ns;
     stage.finished = msg->finished != 0;
-    for (std::size_t i = 0; i < msg->counter_names.size(); ++i) stage.counters[msg->counter_names[i]] = msg->counter_values[i];
+    for (std::size_t i = 0; i < msg->counter_names.size(); ++i)
+      stage.counters[msg->counter_names[i]] = msg->counter_values[i];
   }
   changed_.notify_all();
 }
@@ -114,7 +120,8 @@ void RunSource::awaitGraph() {
     const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
     if (waited.count() > params_.graph_timeout_s) break;
   }
-  throw std::runtime_error("the graph is not complete after " + std::to_string(params_.graph_timeout_s) + " s: " + missing);
+  throw std::runtime_error("the graph is not complete after " + std::to_string(params_.graph_timeout_s) +
+                           " s: " + missing);
 }
 
 std::vector<std::string> RunSource::wantedTopics() const {
@@ -127,7 +134,8 @@ std::vector<std::string> RunSource::wantedTopics() const {
   const std::string ns = handle_.getNamespace() + "/";
   std::vector<std::string> topics;
   for (const std::string& topic : wanted) {
-    if (produced.count(topic) == 0 && topic.compare(0, ns.size(), ns) == 0) topics.push_back(topic.substr(ns.size()));
+    if (produced.count(topic) == 0 && topic.compare(0, ns.size(), ns) == 0)
+      topics.push_back(topic.substr(ns.size()));
   }
   return topics;
 }
@@ -185,13 +193,15 @@ bool RunSource::publish(const atlas::Event& event) {
     send(event);
     return true;
   }
-  if (promised_ == atlas::kBeginOfTime || event.stamp - 1 >= promised_ + kPromiseStep) promise(event.stamp - 1);
+  if (promised_ == atlas::kBeginOfTime || event.stamp - 1 >= promised_ + kPromiseStep)
+    promise(event.stamp - 1);
   const atlas::Duration lead = atlas::fromSeconds(params_.lead_s);
   // Before the first progress of a stage it has reached nothing: the lead then counts from the first promise.
   const auto close_enough = [&] {
     const atlas::Stamp behind = slowest();
-    return behind == atlas::kBeginOfTime ? promised_ == atlas::kBeginOfTime || event.stamp < first_promise_ + lead
-                                         : event.stamp - lead <= behind;
+    return behind == atlas::kBeginOfTime
+               ? promised_ == atlas::kBeginOfTime || event.stamp < first_promise_ + lead
+               : event.stamp - lead <= behind;
   };
   bool wait = false;
   {
@@ -229,7 +239,8 @@ void RunSource::promise(atlas::Stamp watermark) {
 bool RunSource::end() {
   promise(atlas::kEndOfTime);
   return awaitStages([this] {
-    return std::all_of(stages_.begin(), stages_.end(), [](const auto& entry) { return entry.second.finished; });
+    return std::all_of(stages_.begin(), stages_.end(),
+                       [](const auto& entry) { return entry.second.finished; });
   });
 }
 

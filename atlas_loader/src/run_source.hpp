@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The source's half of the run protocol (atlas_msgs): waits until the graph is complete, publishes events, never runs ahead of
-// the slowest stage by more than a bounded span of event time, ends the run when every stage has ended.
-// Callbacks come from the nodelet's thread, publish() and the waits from the one thread that reads the record.
+// The source's half of the run protocol (atlas_msgs): waits until the graph is complete, publishes events,
+// never runs ahead of the slowest stage by more than a bounded span of event time, ends the run when every
+// stage has ended. Callbacks come from the nodelet's thread, publish() and the waits from the one thread that
+// reads the record.
 #pragma once
 
 #include <atlas_msgs/GraphStart.h>
@@ -39,13 +40,15 @@ class RunSource {
 
   /// Advertises one topic per stream, in the graph's namespace.
   void advertise(const std::vector<atlas::StreamInfo>& streams);
-  /// Topics (without the graph's namespace) that stages want and no stage produces; known once every stage has said hello.
+  /// Topics (without the graph's namespace) that stages want and no stage produces; known once every stage
+  /// has said hello.
   [[nodiscard]] std::vector<std::string> wantedTopics() const;
   /// Blocks until every stage is there and linked; throws std::runtime_error that says what is missing.
   void awaitGraph();
   /// Starts epoch n (0, 1, ...): the stages begin afresh.
   void begin(std::uint32_t epoch);
-  /// Publishes, blocking while the slowest stage is too far behind. False when the run has failed or ROS shuts down.
+  /// Publishes, blocking while the slowest stage is too far behind. False when the run has failed or ROS
+  /// shuts down.
   bool publish(const atlas::Event& event);
   /// Promise to the stages: nothing at or before `watermark` follows.
   void promise(atlas::Stamp watermark);

@@ -13,9 +13,11 @@ namespace {
 std::vector<std::string> inputNames(const std::vector<std::string>& cameras) {
   std::vector<std::string> names;
   for (const std::string& camera : cameras) {
-    for (const char* kind : {"/packets", "/image_raw/compressed", "/image_raw"}) names.push_back(camera + kind);
+    for (const char* kind : {"/packets", "/image_raw/compressed", "/image_raw"})
+      names.push_back(camera + kind);
   }
-  if (names.empty()) names.emplace_back("none");  // a decoder with nothing to do ends with its one silent input
+  if (names.empty())
+    names.emplace_back("none");  // a decoder with nothing to do ends with its one silent input
   return names;
 }
 

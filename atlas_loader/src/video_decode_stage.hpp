@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Stage: video packets, JPEG or PNG bytes, or pixels of a camera become decoded images `<camera>/image`, whichever of them the
-// record has. (The output is not called image_raw: a bag may already carry a topic of that name, and a topic has one producer.)
+// Stage: video packets, JPEG or PNG bytes, or pixels of a camera become decoded images `<camera>/image`,
+// whichever of them the record has. (The output is not called image_raw: a bag may already carry a topic of
+// that name, and a topic has one producer.)
 #pragma once
 
 #include <map>
@@ -39,7 +40,8 @@ class VideoDecodeStage : public atlas::Stage {
  private:
   struct Camera {
     std::unique_ptr<atlas::VideoDecoder> decoder;
-    std::map<atlas::Stamp, bool> owed;  ///< stamps of packets whose picture has not come out yet; true = has one
+    std::map<atlas::Stamp, bool>
+        owed;  ///< stamps of packets whose picture has not come out yet; true = has one
   };
   [[nodiscard]] atlas::Stamp heldBackFrom() const override;
   void onEnd() override;
@@ -56,8 +58,9 @@ atlas::StageFactory bindVideoDecoder(Bus& bus, const VideoDecodeParams& params) 
   std::vector<std::function<void(const atlas::ImagePtr&)>> images;
   for (std::size_t c = 0; c < params.cameras.size(); ++c) {
     const std::string& camera = params.cameras[c];
-    bus.template input<S, atlas::VideoPacketPtr>(S::kKinds * c + S::kPackets, camera + "/packets",
-                                                 [c](S& s, const atlas::VideoPacketPtr& packet) { s.push(c, packet); });
+    bus.template input<S, atlas::VideoPacketPtr>(
+        S::kKinds * c + S::kPackets, camera + "/packets",
+        [c](S& s, const atlas::VideoPacketPtr& packet) { s.push(c, packet); });
     bus.template input<S, atlas::EncodedImage>(
         S::kKinds * c + S::kCompressed, camera + "/image_raw/compressed",
         [c](S& s, const atlas::EncodedImage& encoded) { s.pushCompressed(c, encoded.image); });
@@ -67,7 +70,9 @@ atlas::StageFactory bindVideoDecoder(Bus& bus, const VideoDecodeParams& params) 
   }
   return [=] {
     auto stage = std::make_unique<S>(params);
-    stage->on_image = [images](std::size_t camera, const atlas::ImagePtr& image) { images.at(camera)(image); };
+    stage->on_image = [images](std::size_t camera, const atlas::ImagePtr& image) {
+      images.at(camera)(image);
+    };
     return stage;
   };
 }

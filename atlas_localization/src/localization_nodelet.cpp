@@ -13,7 +13,8 @@ namespace atlas_localization {
 class LocalizationNodelet : public atlas_ros::StageNodelet<atlas::LocalizationParams> {
   atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::LocalizationParams& params) override {
     path_publisher_ = getNodeHandle().advertise<nav_msgs::Path>("trajectory", atlas_ros::kKeepAll, true);
-    anchor_publisher_ = getNodeHandle().advertise<sensor_msgs::NavSatFix>("geographic", atlas_ros::kKeepAll, true);
+    anchor_publisher_ =
+        getNodeHandle().advertise<sensor_msgs::NavSatFix>("geographic", atlas_ros::kKeepAll, true);
     const atlas::StageFactory factory = atlas::bindLocalization(link, params);
     return [this, factory] {
       path_ = {};
@@ -31,7 +32,8 @@ class LocalizationNodelet : public atlas_ros::StageNodelet<atlas::LocalizationPa
     };
   }
 
-  /// For outside nodes: tf map -> odom -> base_link (map and odom coincide: the filter is global) and a thinned path.
+  /// For outside nodes: tf map -> odom -> base_link (map and odom coincide: the filter is global) and a
+  /// thinned path.
   void show(const atlas::Odometry& odometry) {
     geometry_msgs::TransformStamped base;
     base.header.stamp = atlas_ros::toTime(odometry.stamp);
@@ -52,8 +54,8 @@ class LocalizationNodelet : public atlas_ros::StageNodelet<atlas::LocalizationPa
   }
 
   void extendPath(const ros::Time& stamp, const geometry_msgs::Pose& pose, const Eigen::Vector3d& position) {
-    constexpr double kStep = 0.5;                // m between points of the path
-    constexpr std::size_t kMostPoses = 20000;    // then every second one goes: constant memory
+    constexpr double kStep = 0.5;              // m between points of the path
+    constexpr std::size_t kMostPoses = 20000;  // then every second one goes: constant memory
     if (!path_.poses.empty() && (position - last_position_).norm() < kStep) return;
     last_position_ = position;
     geometry_msgs::PoseStamped stamped;

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Nodelets: one per product. The only nodelets that open output files; the folder is the parameter `out` of the namespace.
+// Nodelets: one per product. The only nodelets that open output files; the folder is the parameter `out` of
+// the namespace.
+#include <nodelet/nodelet.h>
+
 #include <pluginlib/class_list_macros.hpp>
 
 #include "atlas_ros/param_reader.hpp"
 #include "atlas_ros/stage_link.hpp"
 #include "writer_params.hpp"
 
-#include <nodelet/nodelet.h>
-
 namespace atlas_writers {
 
 template <class Params>
 class WriterNodelet : public nodelet::Nodelet {
  protected:
-  virtual atlas::StageFactory bind(atlas_ros::StageLink& link, const Params& params, const std::string& out) = 0;
+  virtual atlas::StageFactory bind(atlas_ros::StageLink& link, const Params& params,
+                                   const std::string& out) = 0;
 
  private:
   void onInit() override try {
@@ -23,7 +25,8 @@ class WriterNodelet : public nodelet::Nodelet {
     reader.rejectUnread();
     std::string out;
     if (!getNodeHandle().getParam("out", out) || out.empty()) {
-      throw std::invalid_argument("missing parameter " + getNodeHandle().resolveName("out") + " (the output folder)");
+      throw std::invalid_argument("missing parameter " + getNodeHandle().resolveName("out") +
+                                  " (the output folder)");
     }
     const std::string name = getName();
     link_ = std::make_unique<atlas_ros::StageLink>(getNodeHandle(), name.substr(name.rfind('/') + 1));
@@ -36,13 +39,13 @@ class WriterNodelet : public nodelet::Nodelet {
   std::unique_ptr<atlas_ros::StageLink> link_;
 };
 
-#define ATLAS_WRITER_NODELET(Name, bindCall)                                                                        \
-  class Name##Nodelet : public WriterNodelet<atlas::Name##Params> {                                                 \
-    atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::Name##Params& params, const std::string& out) \
-        override {                                                                                                  \
-      (void)params;                                                                                                 \
-      return bindCall;                                                                                              \
-    }                                                                                                               \
+#define ATLAS_WRITER_NODELET(Name, bindCall)                                                \
+  class Name##Nodelet : public WriterNodelet<atlas::Name##Params> {                         \
+    atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::Name##Params& params, \
+                             const std::string& out) override {                             \
+      (void)params;                                                                         \
+      return bindCall;                                                                      \
+    }                                                                                       \
   }
 
 ATLAS_WRITER_NODELET(TrajectoryWriter, atlas::bindTrajectoryWriter(link, out));

@@ -25,7 +25,8 @@ void writePng(const std::filesystem::path& path, const cv::Mat& image) {
 DepthWriter::DepthWriter(std::filesystem::path out, int preview_period)
     : out_(std::move(out)), preview_period_(preview_period) {
   if (preview_period < 0) {
-    throw std::invalid_argument("depth_writer: preview_period must not be negative, got " + std::to_string(preview_period));
+    throw std::invalid_argument("depth_writer: preview_period must not be negative, got " +
+                                std::to_string(preview_period));
   }
 }
 

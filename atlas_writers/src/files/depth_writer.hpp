@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// depth/<camera>/<image index, 6 digits>.png: 16 bit, z-depth x 256, 0 = none (KITTI's convention), and 8-bit previews.
+// depth/<camera>/<image index, 6 digits>.png: 16 bit, z-depth x 256, 0 = none (KITTI's convention), and 8-bit
+// previews.
 #pragma once
 
 #include <cstdint>

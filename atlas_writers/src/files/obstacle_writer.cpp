@@ -16,8 +16,8 @@ void ObstacleWriter::write(const Obstacles& obstacles) {
     char row[400];
     const int length =
         std::snprintf(row, sizeof row, "%lld,%zu,%.4f,%.4f,%.4f,%.6f,%.4f,%.4f,%.4f,%u\n",
-                      static_cast<long long>(obstacles.stamp), index++, o.center.x(), o.center.y(), o.center.z(),
-                      o.yaw_rad, o.size.x(), o.size.y(), o.size.z(), o.points);
+                      static_cast<long long>(obstacles.stamp), index++, o.center.x(), o.center.y(),
+                      o.center.z(), o.yaw_rad, o.size.x(), o.size.y(), o.size.z(), o.points);
     file_->write(row, static_cast<std::size_t>(length));
   }
 }

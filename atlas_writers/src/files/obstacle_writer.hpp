@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// obstacles/obstacles.csv: stamp_ns,index,x,y,z,yaw,length,width,height,points (map), one row per box and sweep.
+// obstacles/obstacles.csv: stamp_ns,index,x,y,z,yaw,length,width,height,points (map), one row per box and
+// sweep.
 #pragma once
 
 #include <filesystem>

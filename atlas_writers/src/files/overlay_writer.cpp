@@ -24,7 +24,8 @@ std::vector<std::string> inputNames(const std::vector<std::string>& cameras) {
 
 void validate(const OverlayWriterParams& params) {
   if (!(params.period_s > 0)) {
-    throw std::invalid_argument("overlay_writer: period_s must be positive, got " + std::to_string(params.period_s));
+    throw std::invalid_argument("overlay_writer: period_s must be positive, got " +
+                                std::to_string(params.period_s));
   }
   if (params.cameras.empty()) throw std::invalid_argument("overlay_writer: cameras is empty");
 }
@@ -45,7 +46,8 @@ void OverlayWriterStage::push(std::size_t camera, const ImagePtr& image) {
     const std::int64_t period = image->stamp / fromSeconds(params_.period_s);
     if (period == last_period_[camera]) return;
     last_period_[camera] = period;
-    Picture& picture = waiting_[camera][image->stamp];  // dispatched before depth and frustums of the same stamp
+    Picture& picture =
+        waiting_[camera][image->stamp];  // dispatched before depth and frustums of the same stamp
     picture.index = index;
     picture.image = image;
   });
@@ -84,7 +86,8 @@ void OverlayWriterStage::write(std::size_t camera, const Picture& picture) {
     return;
   }
   if (canvas.channels() == 1) cv::cvtColor(canvas, canvas, cv::COLOR_GRAY2BGR);
-  if (picture.depth && picture.depth->depth.size() == canvas.size()) canvas = drawDepth(canvas, picture.depth->depth);
+  if (picture.depth && picture.depth->depth.size() == canvas.size())
+    canvas = drawDepth(canvas, picture.depth->depth);
   if (picture.frustums) canvas = drawFrustums(canvas, *picture.frustums);
   std::vector<unsigned char> png;
   cv::imencode(".png", canvas, png, {cv::IMWRITE_PNG_COMPRESSION, 1});

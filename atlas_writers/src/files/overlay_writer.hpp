@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures for people, now and then: a camera image with the lidar points coloured by depth and the frustums' boxes.
-// overlay/<camera>/<image index, 6 digits>.png
+// Pictures for people, now and then: a camera image with the lidar points coloured by depth and the frustums'
+// boxes. overlay/<camera>/<image index, 6 digits>.png
 #pragma once
 
 #include <filesystem>
@@ -47,8 +47,8 @@ class OverlayWriterStage : public Stage {
   OverlayWriterParams params_;
   std::filesystem::path out_;
   std::vector<std::uint32_t> image_count_;
-  std::vector<std::int64_t> last_period_;                 ///< per camera: stamp / period of its last picture
-  std::vector<std::map<Stamp, Picture>> waiting_;         ///< per camera
+  std::vector<std::int64_t> last_period_;          ///< per camera: stamp / period of its last picture
+  std::vector<std::map<Stamp, Picture>> waiting_;  ///< per camera
 };
 
 }  // namespace atlas

@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 
 class Sha256 {
  public:
-  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) { EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr); }
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
+  }
   void add(const void* data, std::size_t size) { EVP_DigestUpdate(context_.get(), data, size); }
   void add(const std::string& text) { add(text.data(), text.size()); }
   void addFile(const fs::path& path) {
@@ -96,11 +98,14 @@ std::string toJson(const RunSummary& summary) {
   if (!summary.failure.empty()) root["failure"] = summary.failure;
   root["inputs"] = nlohmann::ordered_json::array();
   for (const RunInput& input : summary.inputs) {
-    root["inputs"].push_back({{"path", fs::path(input.path).filename().string()}, {"bytes", input.bytes},
-                              {"sha256", input.sha256}, {"hashed", input.hashed}});
+    root["inputs"].push_back({{"path", fs::path(input.path).filename().string()},
+                              {"bytes", input.bytes},
+                              {"sha256", input.sha256},
+                              {"hashed", input.hashed}});
   }
-  root["configuration"] =
-      summary.configuration.empty() ? nlohmann::ordered_json::object() : nlohmann::ordered_json::parse(summary.configuration);
+  root["configuration"] = summary.configuration.empty()
+                              ? nlohmann::ordered_json::object()
+                              : nlohmann::ordered_json::parse(summary.configuration);
   for (const auto& [topic, count] : summary.streams) root["streams"][topic]["count"] = count;
   for (const auto& [stage, counters] : summary.stages) {
     root["stages"][stage] = nlohmann::ordered_json::object();
@@ -115,7 +120,9 @@ std::string toJson(const RunSummary& summary) {
     if (!file.examples.empty()) node["examples"] = file.examples;
   }
   root["notes"] = summary.notes;
-  root["timings"] = {{"data_s", summary.data_s}, {"wall_s", summary.wall_s}, {"cpu_s", summary.cpu_s},
+  root["timings"] = {{"data_s", summary.data_s},
+                     {"wall_s", summary.wall_s},
+                     {"cpu_s", summary.cpu_s},
                      {"peak_rss_mb", summary.peak_rss_mb}};
   return root.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -129,7 +136,9 @@ void writeRunSummary(const std::string& out, const RunSummary& summary) {
 void measureProcess(RunSummary& summary) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   summary.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   summary.peak_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts kilobytes
 }

@@ -19,12 +19,12 @@ struct RunInput {
 };
 
 struct RunSummary {
-  std::string mode;           ///< "offline" or "nodelets"
-  bool complete = false;      ///< every stage came to its end
-  std::string failure;        ///< empty when complete
+  std::string mode;       ///< "offline" or "nodelets"
+  bool complete = false;  ///< every stage came to its end
+  std::string failure;    ///< empty when complete
   std::vector<RunInput> inputs;
-  std::string configuration;  ///< JSON text
-  std::map<std::string, std::uint64_t> streams;                        ///< events given to the stages, by topic
+  std::string configuration;                     ///< JSON text
+  std::map<std::string, std::uint64_t> streams;  ///< events given to the stages, by topic
   std::map<std::string, std::map<std::string, std::uint64_t>> stages;  ///< counters by stage
   std::map<std::string, FileReport> files;                             ///< rows of each input file or topic
   std::vector<std::string> notes;
@@ -34,8 +34,8 @@ struct RunSummary {
 /// Version of the suite, as in package.xml.
 std::string suiteVersion();
 
-/// SHA-256 of a file or, for a folder, of the sorted list of its files with their sizes and the contents of those up to 16 MB.
-/// Throws std::runtime_error naming what cannot be read.
+/// SHA-256 of a file or, for a folder, of the sorted list of its files with their sizes and the contents of
+/// those up to 16 MB. Throws std::runtime_error naming what cannot be read.
 RunInput hashInput(const std::string& path);
 
 std::string toJson(const RunSummary& summary);

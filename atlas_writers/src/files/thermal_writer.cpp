@@ -12,9 +12,10 @@
 namespace atlas {
 namespace {
 
-constexpr std::size_t kMostWaiting = 256;      // frames; 30 Hz, so parts may be eight seconds apart
-constexpr Duration kSplitBlock = 10 * kSecond; // neighbouring frames look alike: never one in train, the next in val
-constexpr std::int64_t kValEvery = 5;          // every fifth block
+constexpr std::size_t kMostWaiting = 256;  // frames; 30 Hz, so parts may be eight seconds apart
+constexpr Duration kSplitBlock =
+    10 * kSecond;                      // neighbouring frames look alike: never one in train, the next in val
+constexpr std::int64_t kValEvery = 5;  // every fifth block
 
 std::string numbered(std::uint32_t index, const char* ending) {
   char name[32];
@@ -62,7 +63,8 @@ void ThermalWriter::write(const Frame& frame) {
   OutputFile image(folder_ / "images" / name);
   image.write(png.data(), png.size());
   image.commit();
-  writeFile(folder_ / "labels" / numbered(detections.image_index, "txt"), yoloLabels(detections, pixels.cols, pixels.rows));
+  writeFile(folder_ / "labels" / numbered(detections.image_index, "txt"),
+            yoloLabels(detections, pixels.cols, pixels.rows));
   if (!rows_) {
     rows_ = std::make_unique<OutputFile>(folder_ / "detections.txt");
     train_ = std::make_unique<OutputFile>(folder_ / "train.txt");
@@ -71,7 +73,8 @@ void ThermalWriter::write(const Frame& frame) {
   rows_->write(detectionRows(detections, pixels.cols, pixels.rows));
   const bool is_val = (detections.stamp / kSplitBlock) % kValEvery == 0;
   (is_val ? val_ : train_)->write("images/" + name + "\n");
-  const CocoImage coco{detections.image_index, "images/" + name, pixels.cols, pixels.rows, detections.stamp, frame.range};
+  const CocoImage coco{detections.image_index, "images/" + name, pixels.cols, pixels.rows,
+                       detections.stamp,       frame.range};
   coco_images_ += (coco_images_.empty() ? "" : ",\n") + cocoImage(coco);
   for (const Detection2d& box : detections.boxes) {
     const auto annotation = cocoAnnotation(next_annotation_, coco, box);
@@ -93,8 +96,8 @@ void ThermalWriter::close() {
   rows_->commit();
   train_->commit();
   val_->commit();
-  writeFile(folder_ / "annotations.json", cocoBegin("Thermal images with labels moved from RGB detections") + coco_images_ +
-                                              cocoMiddle() + coco_annotations_ + cocoEnd());
+  writeFile(folder_ / "annotations.json", cocoBegin("Thermal images with labels moved from RGB detections") +
+                                              coco_images_ + cocoMiddle() + coco_annotations_ + cocoEnd());
 }
 
 }  // namespace atlas

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The thermal dataset: images, YOLO labels, COCO annotations, the detections' own row format, a split by blocks of time.
-// Only thermal frames that some RGB image chose are part of it. thermal/{images,labels}/<IR index, 6 digits>.{png,txt},
-// thermal/annotations.json, thermal/detections.txt, thermal/train.txt, thermal/val.txt
+// The thermal dataset: images, YOLO labels, COCO annotations, the detections' own row format, a split by
+// blocks of time. Only thermal frames that some RGB image chose are part of it. thermal/{images,labels}/<IR
+// index, 6 digits>.{png,txt}, thermal/annotations.json, thermal/detections.txt, thermal/train.txt,
+// thermal/val.txt
 #pragma once
 
 #include <cstdint>

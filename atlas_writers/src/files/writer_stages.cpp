@@ -52,7 +52,10 @@ void TrajectoryWriterStage::push(const Odometry& odometry) {
 }
 
 CloudWriterStage::CloudWriterStage(const CloudWriterParams& params, const std::filesystem::path& out)
-    : Stage("cloud_writer", withSuffix(params.lidars, "/batches")), params_(params), writer_(out), count_(params.lidars.size(), 0) {}
+    : Stage("cloud_writer", withSuffix(params.lidars, "/batches")),
+      params_(params),
+      writer_(out),
+      count_(params.lidars.size(), 0) {}
 void CloudWriterStage::push(std::size_t lidar, const BatchedSweepPtr& batched) {
   const std::uint32_t index = count_.at(lidar)++;
   enqueue(lidar, batched->stamp, [this, lidar, batched, index] {
@@ -140,7 +143,8 @@ void ThermalWriterStage::push(const ProjectedDetections& projected) {
   });
 }
 
-ObstacleWriterStage::ObstacleWriterStage(const std::filesystem::path& out) : Stage("obstacle_writer", {"obstacles"}), writer_(out) {}
+ObstacleWriterStage::ObstacleWriterStage(const std::filesystem::path& out)
+    : Stage("obstacle_writer", {"obstacles"}), writer_(out) {}
 ObstacleWriterStage::~ObstacleWriterStage() {
   closeQuietly("obstacle_writer", [this] { writer_.close(); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The writers as stages: inputs merged by event time like everywhere, files opened below one output folder. The nodelets and the
-// offline replay bind the same functions (see atlas/pipeline.hpp), so both write the same bytes.
+// The writers as stages: inputs merged by event time like everywhere, files opened below one output folder.
+// The nodelets and the offline replay bind the same functions (see atlas/pipeline.hpp), so both write the
+// same bytes.
 #pragma once
 
 #include <filesystem>
@@ -50,8 +51,8 @@ struct WriterParams {
   OverlayWriterParams overlay;
 };
 
-/// A stage that is destroyed before its inputs have ended (Ctrl-C) closes its files as they are: valid, with what was known.
-/// Adds all writers to a graph, after the stages that feed them.
+/// A stage that is destroyed before its inputs have ended (Ctrl-C) closes its files as they are: valid, with
+/// what was known. Adds all writers to a graph, after the stages that feed them.
 void addWriters(LocalGraph& graph, const WriterParams& params, const std::string& out);
 
 class TrajectoryWriterStage : public Stage {
@@ -177,7 +178,8 @@ StageFactory bindThermalWriter(Bus& bus, const ThermalWriterParams& params, cons
   const std::string& camera = params.thermal_camera;
   bus.template input<S, TemperatureRange>(S::kTemperature, camera + "/temperature_range",
                                           [](S& s, const TemperatureRange& range) { s.push(range); });
-  bus.template input<S, ImagePtr>(S::kImage, camera + "/image", [](S& s, const ImagePtr& image) { s.push(image); });
+  bus.template input<S, ImagePtr>(S::kImage, camera + "/image",
+                                  [](S& s, const ImagePtr& image) { s.push(image); });
   bus.template input<S, ProjectedDetections>(S::kProjected, camera + "/projected_detections",
                                              [](S& s, const ProjectedDetections& p) { s.push(p); });
   return [=] { return std::make_unique<S>(out); };

@@ -14,7 +14,9 @@
 namespace atlas_ros {
 namespace {
 
-std::string withoutSlash(const std::string& topic) { return topic.rfind('/', 0) == 0 ? topic.substr(1) : topic; }
+std::string withoutSlash(const std::string& topic) {
+  return topic.rfind('/', 0) == 0 ? topic.substr(1) : topic;
+}
 
 class BagReader : public atlas::RecordReader {
  public:
@@ -28,12 +30,15 @@ class BagReader : public atlas::RecordReader {
     readStaticTransforms();
     rosbag::View whole(bag_);
     if (whole.size() > 0) span_ = {fromTime(whole.getBeginTime()), fromTime(whole.getEndTime())};
-    // Without a start nothing is cut off: what was measured before the first record time belongs to the bag too.
+    // Without a start nothing is cut off: what was measured before the first record time belongs to the bag
+    // too.
     if (options.start_s > 0) begin_ = span_.first + atlas::fromSeconds(options.start_s);
-    end_ = options.duration_s < 0 ? atlas::kEndOfTime : std::max(begin_, span_.first) + atlas::fromSeconds(options.duration_s);
+    end_ = options.duration_s < 0 ? atlas::kEndOfTime
+                                  : std::max(begin_, span_.first) + atlas::fromSeconds(options.duration_s);
     std::vector<std::string> topics;
     for (const auto& [topic, stream] : stream_of_) topics.push_back(topic);
-    view_.addQuery(bag_, rosbag::TopicQuery(topics), begin_ > 0 ? toTime(begin_) : ros::TIME_MIN, ros::TIME_MAX);
+    view_.addQuery(bag_, rosbag::TopicQuery(topics), begin_ > 0 ? toTime(begin_) : ros::TIME_MIN,
+                   ros::TIME_MAX);
     next_ = view_.begin();
   }
 
@@ -72,8 +77,10 @@ class BagReader : public atlas::RecordReader {
   void collectStreams() {
     streams_.push_back({"tf_static", atlas::StreamKind::kStaticTransforms, 0});
     rosbag::View whole(bag_);
-    std::map<std::string, std::string> types;  // sorted by topic: the same order for every bag of the same topics
-    for (const rosbag::ConnectionInfo* connection : whole.getConnections()) types[connection->topic] = connection->datatype;
+    std::map<std::string, std::string>
+        types;  // sorted by topic: the same order for every bag of the same topics
+    for (const rosbag::ConnectionInfo* connection : whole.getConnections())
+      types[connection->topic] = connection->datatype;
     for (const auto& [topic, datatype] : types) {
       const auto kind = kindOf(topic, datatype);
       if (!kind) {
@@ -81,8 +88,8 @@ class BagReader : public atlas::RecordReader {
         continue;
       }
       const std::string name = withoutSlash(topic);
-      const bool wanted = options_.topics.empty() ||
-                          std::find(options_.topics.begin(), options_.topics.end(), name) != options_.topics.end();
+      const bool wanted = options_.topics.empty() || std::find(options_.topics.begin(), options_.topics.end(),
+                                                               name) != options_.topics.end();
       if (*kind == atlas::StreamKind::kStaticTransforms || !wanted) continue;
       stream_of_[topic] = streams_.size();
       rosbag::View count(bag_, rosbag::TopicQuery(topic));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A bag as a RecordReader: events ordered by header stamp (bags are stored in order of recording), unusable messages counted.
+// A bag as a RecordReader: events ordered by header stamp (bags are stored in order of recording), unusable
+// messages counted.
 #pragma once
 
 #include <memory>
@@ -11,10 +12,11 @@
 namespace atlas_ros {
 
 struct BagOptions {
-  double start_s = 0.0;      ///< skip this much after the first message
-  double duration_s = -1.0;  ///< negative: to the end
+  double start_s = 0.0;             ///< skip this much after the first message
+  double duration_s = -1.0;         ///< negative: to the end
   std::vector<std::string> topics;  ///< without leading slash; empty = all
-  /// Events may lie this much later in the bag than their stamp says; more is counted as out of order and left out.
+  /// Events may lie this much later in the bag than their stamp says; more is counted as out of order and
+  /// left out.
   double reorder_s = 2.0;
 };
 

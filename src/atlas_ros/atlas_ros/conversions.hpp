@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Every message <-> core conversion of the suite. fromMsg validates (finite, normalized, expected layout) and answers a
-// reason instead of a guess; toMsg copies the data's own stamp. A value that passes both ways is unchanged, bit by bit.
+// Every message <-> core conversion of the suite. fromMsg validates (finite, normalized, expected layout) and
+// answers a reason instead of a guess; toMsg copies the data's own stamp. A value that passes both ways is
+// unchanged, bit by bit.
 #pragma once
 
 #include <atlas_msgs/Detection2dArray.h>
@@ -37,7 +38,8 @@ atlas::Stamp fromTime(const ros::Time& time);
 // Sensors
 tf2_msgs::TFMessage toMsg(const atlas::StaticTransforms& transforms, atlas::Stamp stamp);
 atlas::Outcome<atlas::StaticTransforms> fromMsg(const tf2_msgs::TFMessage& msg);
-sensor_msgs::Imu toMsg(const atlas::ImuSample& sample);  // frame base_link; covariance[0] = -1 where unknown (REP-145)
+sensor_msgs::Imu toMsg(
+    const atlas::ImuSample& sample);  // frame base_link; covariance[0] = -1 where unknown (REP-145)
 atlas::Outcome<atlas::ImuSample> fromMsg(const sensor_msgs::Imu& msg);
 sensor_msgs::MagneticField toMsg(const atlas::MagneticSample& sample);
 atlas::MagneticSample fromMsg(const sensor_msgs::MagneticField& msg);

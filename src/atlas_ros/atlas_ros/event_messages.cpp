@@ -9,7 +9,8 @@ std::optional<atlas::StreamKind> kindOf(const std::string& topic, const std::str
   using atlas::StreamKind;
   if (datatype == "tf2_msgs/TFMessage") {
     const std::string name = "tf_static";
-    const bool is_static = topic.size() >= name.size() && topic.compare(topic.size() - name.size(), name.size(), name) == 0;
+    const bool is_static =
+        topic.size() >= name.size() && topic.compare(topic.size() - name.size(), name.size(), name) == 0;
     if (!is_static) return std::nullopt;
     return StreamKind::kStaticTransforms;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which message carries which event, in both directions: used by the player, the converter and the bag reader.
+// Which message carries which event, in both directions: used by the player, the converter and the bag
+// reader.
 #pragma once
 
 #include <boost/make_shared.hpp>
@@ -19,22 +20,38 @@ void withMessage(atlas::StreamKind kind, const atlas::Event& event, Use&& use) {
   const auto give = [&use](auto message) { use(boost::make_shared<decltype(message)>(std::move(message))); };
   const atlas::Payload& p = event.payload;
   switch (kind) {
-    case StreamKind::kStaticTransforms: return give(toMsg(std::get<atlas::StaticTransforms>(p), event.stamp));
-    case StreamKind::kImu: return give(toMsg(std::get<atlas::ImuSample>(p)));
-    case StreamKind::kMagnetic: return give(toMsg(std::get<atlas::MagneticSample>(p)));
-    case StreamKind::kPressure: return give(toPressureMsg(std::get<atlas::ScalarSample>(p)));
-    case StreamKind::kTemperature: return give(toTemperatureMsg(std::get<atlas::ScalarSample>(p)));
-    case StreamKind::kTimeReference: return give(toMsg(std::get<atlas::TimeReference>(p)));
-    case StreamKind::kGnssFix: return give(toMsg(std::get<atlas::GnssFix>(p)));
-    case StreamKind::kGnssHeading: return give(toMsg(std::get<atlas::GnssHeading>(p)));
-    case StreamKind::kPoints: return give(toMsg(*std::get<atlas::SweepPtr>(p)));
-    case StreamKind::kCameraInfo: return give(toMsg(std::get<atlas::CameraInfo>(p)));
-    case StreamKind::kVideoPackets: return give(toMsg(*std::get<atlas::VideoPacketPtr>(p)));
-    case StreamKind::kCompressedImage: return give(toCompressedMsg(*std::get<atlas::ImagePtr>(p)));
-    case StreamKind::kImage: return give(toImageMsg(*std::get<atlas::ImagePtr>(p)));
-    case StreamKind::kDetections: return give(toMsg(std::get<atlas::Detections>(p)));
-    case StreamKind::kTemperatureRange: return give(toMsg(std::get<atlas::TemperatureRange>(p)));
-    case StreamKind::kRadar: return give(toMsg(std::get<atlas::RadarScan>(p)));
+    case StreamKind::kStaticTransforms:
+      return give(toMsg(std::get<atlas::StaticTransforms>(p), event.stamp));
+    case StreamKind::kImu:
+      return give(toMsg(std::get<atlas::ImuSample>(p)));
+    case StreamKind::kMagnetic:
+      return give(toMsg(std::get<atlas::MagneticSample>(p)));
+    case StreamKind::kPressure:
+      return give(toPressureMsg(std::get<atlas::ScalarSample>(p)));
+    case StreamKind::kTemperature:
+      return give(toTemperatureMsg(std::get<atlas::ScalarSample>(p)));
+    case StreamKind::kTimeReference:
+      return give(toMsg(std::get<atlas::TimeReference>(p)));
+    case StreamKind::kGnssFix:
+      return give(toMsg(std::get<atlas::GnssFix>(p)));
+    case StreamKind::kGnssHeading:
+      return give(toMsg(std::get<atlas::GnssHeading>(p)));
+    case StreamKind::kPoints:
+      return give(toMsg(*std::get<atlas::SweepPtr>(p)));
+    case StreamKind::kCameraInfo:
+      return give(toMsg(std::get<atlas::CameraInfo>(p)));
+    case StreamKind::kVideoPackets:
+      return give(toMsg(*std::get<atlas::VideoPacketPtr>(p)));
+    case StreamKind::kCompressedImage:
+      return give(toCompressedMsg(*std::get<atlas::ImagePtr>(p)));
+    case StreamKind::kImage:
+      return give(toImageMsg(*std::get<atlas::ImagePtr>(p)));
+    case StreamKind::kDetections:
+      return give(toMsg(std::get<atlas::Detections>(p)));
+    case StreamKind::kTemperatureRange:
+      return give(toMsg(std::get<atlas::TemperatureRange>(p)));
+    case StreamKind::kRadar:
+      return give(toMsg(std::get<atlas::RadarScan>(p)));
   }
   throw std::logic_error("stream of unknown kind");
 }
@@ -44,22 +61,37 @@ template <class Use>
 void withMessageType(atlas::StreamKind kind, Use&& use) {
   using atlas::StreamKind;
   switch (kind) {
-    case StreamKind::kStaticTransforms: return use(static_cast<tf2_msgs::TFMessage*>(nullptr));
+    case StreamKind::kStaticTransforms:
+      return use(static_cast<tf2_msgs::TFMessage*>(nullptr));
     case StreamKind::kImu:
-    case StreamKind::kGnssHeading: return use(static_cast<sensor_msgs::Imu*>(nullptr));
-    case StreamKind::kMagnetic: return use(static_cast<sensor_msgs::MagneticField*>(nullptr));
-    case StreamKind::kPressure: return use(static_cast<sensor_msgs::FluidPressure*>(nullptr));
-    case StreamKind::kTemperature: return use(static_cast<sensor_msgs::Temperature*>(nullptr));
-    case StreamKind::kTimeReference: return use(static_cast<sensor_msgs::TimeReference*>(nullptr));
-    case StreamKind::kGnssFix: return use(static_cast<sensor_msgs::NavSatFix*>(nullptr));
-    case StreamKind::kPoints: return use(static_cast<sensor_msgs::PointCloud2*>(nullptr));
-    case StreamKind::kCameraInfo: return use(static_cast<sensor_msgs::CameraInfo*>(nullptr));
-    case StreamKind::kVideoPackets: return use(static_cast<atlas_msgs::VideoPacket*>(nullptr));
-    case StreamKind::kCompressedImage: return use(static_cast<sensor_msgs::CompressedImage*>(nullptr));
-    case StreamKind::kImage: return use(static_cast<sensor_msgs::Image*>(nullptr));
-    case StreamKind::kDetections: return use(static_cast<atlas_msgs::Detection2dArray*>(nullptr));
-    case StreamKind::kTemperatureRange: return use(static_cast<atlas_msgs::TemperatureRange*>(nullptr));
-    case StreamKind::kRadar: return use(static_cast<atlas_msgs::RadarScan*>(nullptr));
+    case StreamKind::kGnssHeading:
+      return use(static_cast<sensor_msgs::Imu*>(nullptr));
+    case StreamKind::kMagnetic:
+      return use(static_cast<sensor_msgs::MagneticField*>(nullptr));
+    case StreamKind::kPressure:
+      return use(static_cast<sensor_msgs::FluidPressure*>(nullptr));
+    case StreamKind::kTemperature:
+      return use(static_cast<sensor_msgs::Temperature*>(nullptr));
+    case StreamKind::kTimeReference:
+      return use(static_cast<sensor_msgs::TimeReference*>(nullptr));
+    case StreamKind::kGnssFix:
+      return use(static_cast<sensor_msgs::NavSatFix*>(nullptr));
+    case StreamKind::kPoints:
+      return use(static_cast<sensor_msgs::PointCloud2*>(nullptr));
+    case StreamKind::kCameraInfo:
+      return use(static_cast<sensor_msgs::CameraInfo*>(nullptr));
+    case StreamKind::kVideoPackets:
+      return use(static_cast<atlas_msgs::VideoPacket*>(nullptr));
+    case StreamKind::kCompressedImage:
+      return use(static_cast<sensor_msgs::CompressedImage*>(nullptr));
+    case StreamKind::kImage:
+      return use(static_cast<sensor_msgs::Image*>(nullptr));
+    case StreamKind::kDetections:
+      return use(static_cast<atlas_msgs::Detection2dArray*>(nullptr));
+    case StreamKind::kTemperatureRange:
+      return use(static_cast<atlas_msgs::TemperatureRange*>(nullptr));
+    case StreamKind::kRadar:
+      return use(static_cast<atlas_msgs::RadarScan*>(nullptr));
   }
   throw std::logic_error("stream of unknown kind");
 }

@@ -15,7 +15,8 @@ int matType(const std::string& encoding) {
   return -1;
 }
 
-sensor_msgs::Image imageMsg(const cv::Mat& pixels, const std::string& encoding, atlas::Stamp stamp, const std::string& frame) {
+sensor_msgs::Image imageMsg(const cv::Mat& pixels, const std::string& encoding, atlas::Stamp stamp,
+                            const std::string& frame) {
   sensor_msgs::Image msg;
   msg.header.stamp = toTime(stamp);
   msg.header.frame_id = frame;
@@ -109,7 +110,8 @@ atlas::Outcome<atlas::ImagePtr> fromMsg(const sensor_msgs::Image& msg) {
   const int type = matType(msg.encoding);
   if (type < 0 || msg.width == 0 || msg.height == 0) return atlas::Reason::kBadLayout;
   const std::size_t row = static_cast<std::size_t>(msg.width) * CV_ELEM_SIZE(type);
-  if (msg.step < row || msg.data.size() < static_cast<std::size_t>(msg.step) * msg.height) return atlas::Reason::kBadLayout;
+  if (msg.step < row || msg.data.size() < static_cast<std::size_t>(msg.step) * msg.height)
+    return atlas::Reason::kBadLayout;
   auto image = std::make_shared<atlas::Image>();
   image->stamp = fromTime(msg.header.stamp);
   image->frame = msg.header.frame_id;

@@ -13,12 +13,12 @@ template <class T>
 struct MessageOf;
 
 /// A type whose conversions are plain toMsg and fromMsg.
-#define ATLAS_MESSAGE_OF(Type, MessageType)                                                \
-  template <>                                                                              \
-  struct MessageOf<Type> {                                                                 \
-    using Message = MessageType;                                                           \
-    static Message to(const Type& value) { return toMsg(value); }                          \
-    static atlas::Outcome<Type> from(const Message& message) { return fromMsg(message); }  \
+#define ATLAS_MESSAGE_OF(Type, MessageType)                                               \
+  template <>                                                                             \
+  struct MessageOf<Type> {                                                                \
+    using Message = MessageType;                                                          \
+    static Message to(const Type& value) { return toMsg(value); }                         \
+    static atlas::Outcome<Type> from(const Message& message) { return fromMsg(message); } \
   }
 
 ATLAS_MESSAGE_OF(atlas::ImuSample, sensor_msgs::Imu);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads a nodelet's private parameters into a core params struct. Every key must be present, every present key must be read:
-// a typo or a dead key cannot survive (the idea of cartographer's CheckAllKeysWereUsedExactlyOnce).
+// Reads a nodelet's private parameters into a core params struct. Every key must be present, every present
+// key must be read: a typo or a dead key cannot survive (the idea of cartographer's
+// CheckAllKeysWereUsedExactlyOnce).
 #pragma once
 
 #include <ros/node_handle.h>
@@ -21,7 +22,8 @@ class ParamReader {
   void read(const std::string& key, T& value) {
     const std::string name = handle_.resolveName(key);
     if (!handle_.hasParam(key)) throw std::invalid_argument("missing parameter " + name);
-    if (!handle_.getParam(key, value)) throw std::invalid_argument("parameter " + name + " has the wrong type");
+    if (!handle_.getParam(key, value))
+      throw std::invalid_argument("parameter " + name + " has the wrong type");
     read_.insert(name);
   }
   /// A key that may be absent: `value` keeps its default.

@@ -23,18 +23,28 @@ PointField field(const char* name, std::uint32_t offset, std::uint8_t type) {
 
 std::uint32_t sizeOf(std::uint8_t type) {
   switch (type) {
-    case PointField::INT8: case PointField::UINT8: return 1;
-    case PointField::INT16: case PointField::UINT16: return 2;
-    case PointField::INT32: case PointField::UINT32: case PointField::FLOAT32: return 4;
-    case PointField::FLOAT64: return 8;
-    default: return 0;
+    case PointField::INT8:
+    case PointField::UINT8:
+      return 1;
+    case PointField::INT16:
+    case PointField::UINT16:
+      return 2;
+    case PointField::INT32:
+    case PointField::UINT32:
+    case PointField::FLOAT32:
+      return 4;
+    case PointField::FLOAT64:
+      return 8;
+    default:
+      return 0;
   }
 }
 
 const PointField* find(const sensor_msgs::PointCloud2& msg, std::initializer_list<const char*> names) {
   for (const char* name : names) {
     for (const PointField& f : msg.fields) {
-      if (f.name == name && sizeOf(f.datatype) > 0 && f.offset + sizeOf(f.datatype) <= msg.point_step) return &f;
+      if (f.name == name && sizeOf(f.datatype) > 0 && f.offset + sizeOf(f.datatype) <= msg.point_step)
+        return &f;
     }
   }
   return nullptr;
@@ -50,14 +60,22 @@ double load(const std::uint8_t* data) {
 double read(const PointField& f, const std::uint8_t* point) {
   const std::uint8_t* data = point + f.offset;
   switch (f.datatype) {
-    case PointField::INT8: return load<std::int8_t>(data);
-    case PointField::UINT8: return load<std::uint8_t>(data);
-    case PointField::INT16: return load<std::int16_t>(data);
-    case PointField::UINT16: return load<std::uint16_t>(data);
-    case PointField::INT32: return load<std::int32_t>(data);
-    case PointField::UINT32: return load<std::uint32_t>(data);
-    case PointField::FLOAT32: return load<float>(data);
-    default: return load<double>(data);
+    case PointField::INT8:
+      return load<std::int8_t>(data);
+    case PointField::UINT8:
+      return load<std::uint8_t>(data);
+    case PointField::INT16:
+      return load<std::int16_t>(data);
+    case PointField::UINT16:
+      return load<std::uint16_t>(data);
+    case PointField::INT32:
+      return load<std::int32_t>(data);
+    case PointField::UINT32:
+      return load<std::uint32_t>(data);
+    case PointField::FLOAT32:
+      return load<float>(data);
+    default:
+      return load<double>(data);
   }
 }
 
@@ -82,8 +100,8 @@ bool isOurLayout(const sensor_msgs::PointCloud2& msg) {
 
 constexpr double kAssumedSweepDuration = 0.1;  // s, of clouds that carry no time
 
-void readForeign(const sensor_msgs::PointCloud2& msg, const PointField& x, const PointField& y, const PointField& z,
-                 atlas::Sweep& sweep) {
+void readForeign(const sensor_msgs::PointCloud2& msg, const PointField& x, const PointField& y,
+                 const PointField& z, atlas::Sweep& sweep) {
   const PointField* intensity = find(msg, {"intensity", "reflectivity", "i"});
   const PointField* ring = find(msg, {"ring", "channel", "line"});
   const PointField* time = find(msg, {"time", "t", "timestamp", "offset_time", "time_stamp"});
@@ -100,24 +118,27 @@ void readForeign(const sensor_msgs::PointCloud2& msg, const PointField& x, const
       if (p.x == 0 && p.y == 0 && p.z == 0) p.x = p.y = p.z = std::numeric_limits<float>::quiet_NaN();
       if (intensity != nullptr) p.intensity = static_cast<float>(read(*intensity, data));
       if (ring != nullptr) p.ring = static_cast<std::uint16_t>(read(*ring, data));
-      p.time = static_cast<float>(time != nullptr ? relativeTime(*time, data, stamp_s)
-                                                  : kAssumedSweepDuration * (static_cast<double>(i + 1) /
-                                                                             static_cast<double>(sweep.points.size()) - 1.0));
+      p.time = static_cast<float>(
+          time != nullptr
+              ? relativeTime(*time, data, stamp_s)
+              : kAssumedSweepDuration *
+                    (static_cast<double>(i + 1) / static_cast<double>(sweep.points.size()) - 1.0));
     }
   }
 }
 
 }  // namespace
 
-sensor_msgs::PointCloud2 toCloud(const std::vector<atlas::LidarPoint>& points, atlas::Stamp stamp, const std::string& frame) {
+sensor_msgs::PointCloud2 toCloud(const std::vector<atlas::LidarPoint>& points, atlas::Stamp stamp,
+                                 const std::string& frame) {
   sensor_msgs::PointCloud2 msg;
   msg.header.stamp = toTime(stamp);
   msg.header.frame_id = frame;
   msg.height = 1;
   msg.width = static_cast<std::uint32_t>(points.size());
-  msg.fields = {field("x", 0, PointField::FLOAT32),          field("y", 4, PointField::FLOAT32),
-                field("z", 8, PointField::FLOAT32),          field("intensity", 12, PointField::FLOAT32),
-                field("time", 16, PointField::FLOAT32),      field("ring", 20, PointField::UINT16)};
+  msg.fields = {field("x", 0, PointField::FLOAT32),     field("y", 4, PointField::FLOAT32),
+                field("z", 8, PointField::FLOAT32),     field("intensity", 12, PointField::FLOAT32),
+                field("time", 16, PointField::FLOAT32), field("ring", 20, PointField::UINT16)};
   msg.is_bigendian = false;
   msg.point_step = sizeof(atlas::LidarPoint);
   msg.row_step = msg.point_step * msg.width;
@@ -127,7 +148,9 @@ sensor_msgs::PointCloud2 toCloud(const std::vector<atlas::LidarPoint>& points, a
   return msg;
 }
 
-sensor_msgs::PointCloud2 toMsg(const atlas::Sweep& sweep) { return toCloud(sweep.points, sweep.stamp, sweep.frame); }
+sensor_msgs::PointCloud2 toMsg(const atlas::Sweep& sweep) {
+  return toCloud(sweep.points, sweep.stamp, sweep.frame);
+}
 
 atlas::Outcome<atlas::SweepPtr> fromMsg(const sensor_msgs::PointCloud2& msg) {
   auto sweep = std::make_shared<atlas::Sweep>();
@@ -136,8 +159,9 @@ atlas::Outcome<atlas::SweepPtr> fromMsg(const sensor_msgs::PointCloud2& msg) {
   const std::size_t count = static_cast<std::size_t>(msg.width) * msg.height;
   if (count == 0) return atlas::SweepPtr(sweep);
   const std::size_t row_bytes = static_cast<std::size_t>(msg.width) * msg.point_step;
-  const bool short_data = msg.row_step < row_bytes ||
-                          msg.data.size() < static_cast<std::size_t>(msg.height - 1) * msg.row_step + row_bytes;
+  const bool short_data =
+      msg.row_step < row_bytes ||
+      msg.data.size() < static_cast<std::size_t>(msg.height - 1) * msg.row_step + row_bytes;
   if (msg.is_bigendian || short_data) return atlas::Reason::kBadLayout;
   sweep->points.resize(count);
   if (isOurLayout(msg) && msg.row_step == row_bytes) {

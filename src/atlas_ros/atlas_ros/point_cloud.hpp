@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// PointCloud2 <-> points. Ours is x y z intensity time (float32) ring (uint16), 24 bytes a point; foreign layouts of the usual
-// drivers are read by field name.
+// PointCloud2 <-> points. Ours is x y z intensity time (float32) ring (uint16), 24 bytes a point; foreign
+// layouts of the usual drivers are read by field name.
 #pragma once
 
 #include <sensor_msgs/PointCloud2.h>
@@ -13,12 +13,14 @@
 
 namespace atlas_ros {
 
-sensor_msgs::PointCloud2 toCloud(const std::vector<atlas::LidarPoint>& points, atlas::Stamp stamp, const std::string& frame);
+sensor_msgs::PointCloud2 toCloud(const std::vector<atlas::LidarPoint>& points, atlas::Stamp stamp,
+                                 const std::string& frame);
 sensor_msgs::PointCloud2 toMsg(const atlas::Sweep& sweep);
 
-/// x, y, z are required (FLOAT32 or FLOAT64), intensity, ring and time optional. Time fields understood: `time` (float s),
-/// `t` and `offset_time` (uint32 ns), `timestamp` (float64 s, absolute when larger than 1e6, else relative). Without one, time runs
-/// linearly in order over the 0.1 s before the stamp. kBadLayout for big-endian data, missing or short fields.
+/// x, y, z are required (FLOAT32 or FLOAT64), intensity, ring and time optional. Time fields understood:
+/// `time` (float s), `t` and `offset_time` (uint32 ns), `timestamp` (float64 s, absolute when larger than
+/// 1e6, else relative). Without one, time runs linearly in order over the 0.1 s before the stamp. kBadLayout
+/// for big-endian data, missing or short fields.
 atlas::Outcome<atlas::SweepPtr> fromMsg(const sensor_msgs::PointCloud2& msg);
 
 }  // namespace atlas_ros

@@ -11,7 +11,9 @@ namespace {
 constexpr const char* kBaseFrame = "base_link";
 constexpr double kUnknown = -1.0;  // REP-145: first covariance element of a quantity that is not measured
 
-bool finite(const geometry_msgs::Vector3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const geometry_msgs::Vector3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v) {
   geometry_msgs::Vector3 msg;
@@ -46,7 +48,8 @@ ros::Time toTime(atlas::Stamp stamp) {
   if (stamp < 0 || stamp / atlas::kSecond > static_cast<atlas::Stamp>(UINT32_MAX)) {
     throw std::invalid_argument("stamp " + std::to_string(stamp) + " ns cannot be a ros::Time");
   }
-  return {static_cast<std::uint32_t>(stamp / atlas::kSecond), static_cast<std::uint32_t>(stamp % atlas::kSecond)};
+  return {static_cast<std::uint32_t>(stamp / atlas::kSecond),
+          static_cast<std::uint32_t>(stamp % atlas::kSecond)};
 }
 
 atlas::Stamp fromTime(const ros::Time& time) {
@@ -117,7 +120,8 @@ atlas::Outcome<atlas::ImuSample> fromMsg(const sensor_msgs::Imu& msg) {
   sample.angular_velocity_radps = fromVector3(msg.angular_velocity);
   sample.linear_acceleration_mps2 = fromVector3(msg.linear_acceleration);
   const auto& o = msg.orientation;
-  const bool all_zero = o.x == 0 && o.y == 0 && o.z == 0 && o.w == 0;  // drivers without orientation leave it so
+  const bool all_zero =
+      o.x == 0 && o.y == 0 && o.z == 0 && o.w == 0;  // drivers without orientation leave it so
   if (msg.orientation_covariance[0] != kUnknown && !all_zero) {
     const auto orientation = fromQuaternion(msg.orientation);
     if (!orientation) return orientation.reason();

@@ -14,7 +14,9 @@ constexpr atlas::Duration kProgressStep = 20 * atlas::kMillisecond;
 }  // namespace
 
 StageLink::StageLink(const ros::NodeHandle& handle, std::string stage_name)
-    : handle_(handle), name_(std::move(stage_name)), diagnostics_(handle_, handle_, handle_.resolveName(name_)) {
+    : handle_(handle),
+      name_(std::move(stage_name)),
+      diagnostics_(handle_, handle_, handle_.resolveName(name_)) {
   diagnostics_.setHardwareID("none");
   diagnostics_.add("stage", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     describeStage(stage_.get(), unusable_, error_, status);
@@ -36,14 +38,17 @@ void StageLink::start(atlas::StageFactory factory) {
   const std::string progress = handle_.resolveName("progress");
   progress_ = handle_.advertise<atlas_msgs::StageProgress>("progress", kKeepAll, onConnect(progress));
   subscribers_.push_back(handle_.subscribe<atlas_msgs::StageProgress>(
-      "progress", kKeepAll, boost::function<void(const atlas_msgs::StageProgressConstPtr&)>(
-                                [this](const atlas_msgs::StageProgressConstPtr& m) { guarded([&] { onProgress(*m); }); })));
+      "progress", kKeepAll,
+      boost::function<void(const atlas_msgs::StageProgressConstPtr&)>(
+          [this](const atlas_msgs::StageProgressConstPtr& m) { guarded([&] { onProgress(*m); }); })));
   subscribers_.push_back(handle_.subscribe<atlas_msgs::GraphStart>(
-      "graph_start", kKeepAll, boost::function<void(const atlas_msgs::GraphStartConstPtr&)>(
-                                   [this](const atlas_msgs::GraphStartConstPtr& m) { guarded([&] { onGraphStart(*m); }); })));
-  subscribers_.push_back(handle_.subscribe<std_msgs::Empty>(
-      "hello_request", kKeepAll,
-      boost::function<void(const std_msgs::EmptyConstPtr&)>([this](const std_msgs::EmptyConstPtr&) { sayHello(); })));
+      "graph_start", kKeepAll,
+      boost::function<void(const atlas_msgs::GraphStartConstPtr&)>(
+          [this](const atlas_msgs::GraphStartConstPtr& m) { guarded([&] { onGraphStart(*m); }); })));
+  subscribers_.push_back(
+      handle_.subscribe<std_msgs::Empty>("hello_request", kKeepAll,
+                                         boost::function<void(const std_msgs::EmptyConstPtr&)>(
+                                             [this](const std_msgs::EmptyConstPtr&) { sayHello(); })));
 }
 
 void StageLink::sayHello() {
@@ -120,7 +125,8 @@ void StageLink::afterEvents() {
   if (!running_ || failed_) return;
   const atlas::Stamp reached = stage_->progress();
   const bool ended = stage_->ended();
-  const bool due = reached > published_ && (published_ == atlas::kBeginOfTime || reached - published_ >= kProgressStep);
+  const bool due =
+      reached > published_ && (published_ == atlas::kBeginOfTime || reached - published_ >= kProgressStep);
   if (!due && !ended) return;
   published_ = reached;
   if (ended && on_end) on_end();

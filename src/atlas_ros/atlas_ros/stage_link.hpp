@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Connects a core stage with the graph: subscriptions feed its inputs, its outputs and its progress are published, a new
-// epoch replaces it by a fresh one. The protocol (StageHello, GraphStart, StageProgress) is described in atlas_msgs.
-// Everything runs in the nodelet's one callback thread.
+// Connects a core stage with the graph: subscriptions feed its inputs, its outputs and its progress are
+// published, a new epoch replaces it by a fresh one. The protocol (StageHello, GraphStart, StageProgress) is
+// described in atlas_msgs. Everything runs in the nodelet's one callback thread.
 #pragma once
 
 #include <atlas_msgs/GraphStart.h>
@@ -37,8 +37,8 @@ class StageLink {
   StageLink& operator=(const StageLink&) = delete;
   ~StageLink();
 
-  /// Subscribes input `index` of the stage (see atlas::LocalGraph for the idea of a bus). A message that cannot be used is
-  /// counted with its reason, in diagnostics and in the run's summary.
+  /// Subscribes input `index` of the stage (see atlas::LocalGraph for the idea of a bus). A message that
+  /// cannot be used is counted with its reason, in diagnostics and in the run's summary.
   template <class StageType, class T>
   void input(std::size_t index, const std::string& topic, std::function<void(StageType&, const T&)> push) {
     using Message = typename MessageOf<T>::Message;
@@ -64,8 +64,8 @@ class StageLink {
     const std::string resolved = handle_.resolveName(topic);
     auto out = std::make_shared<Output>();
     out->topic = resolved;
-    out->publisher =
-        handle_.advertise<typename MessageOf<T>::Message>(topic, kKeepAll, onConnect(resolved), {}, {}, latch);
+    out->publisher = handle_.advertise<typename MessageOf<T>::Message>(topic, kKeepAll, onConnect(resolved),
+                                                                       {}, {}, latch);
     outputs_.push_back(out);
     return [out](const T& value) {
       out->publisher.publish(boost::make_shared<typename MessageOf<T>::Message>(MessageOf<T>::to(value)));
@@ -77,7 +77,8 @@ class StageLink {
   void start(atlas::StageFactory factory);
 
   [[nodiscard]] const atlas::Stage* stage() const { return stage_.get(); }
-  /// Called when the stage of an epoch has ended and everything is published (writers close their files in the stage itself).
+  /// Called when the stage of an epoch has ended and everything is published (writers close their files in
+  /// the stage itself).
   std::function<void()> on_end;
 
  private:
@@ -88,8 +89,8 @@ class StageLink {
   };
   struct Input {
     std::string topic;
-    std::uint64_t count = 0;                       ///< delivered in this epoch
-    std::deque<std::function<void()>> waiting;     ///< messages of an epoch that has not begun
+    std::uint64_t count = 0;                    ///< delivered in this epoch
+    std::deque<std::function<void()>> waiting;  ///< messages of an epoch that has not begun
     std::deque<PendingProgress> progress;
   };
   struct Output {
@@ -119,10 +120,11 @@ class StageLink {
   ros::Publisher hello_, progress_;
   std::set<std::string> links_;
   std::uint32_t epoch_ = 0;
-  bool running_ = false;   ///< between GraphStart and the end of the epoch
+  bool running_ = false;  ///< between GraphStart and the end of the epoch
   bool failed_ = false;
   std::string error_;
-  diagnostic_updater::Updater diagnostics_;  ///< one status a second of event time; never an input of anything
+  diagnostic_updater::Updater
+      diagnostics_;  ///< one status a second of event time; never an input of anything
   atlas::Stamp published_ = atlas::kBeginOfTime;
 };
 

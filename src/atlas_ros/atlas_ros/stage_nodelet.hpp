@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What all stage nodelets share: strict parameters, then the stage's own wiring (atlas/pipeline.hpp) bound to topics.
+// What all stage nodelets share: strict parameters, then the stage's own wiring (atlas/pipeline.hpp) bound to
+// topics.
 #pragma once
 
 #include <nodelet/nodelet.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The YAML keys of every stage: field name = key. One list serves the nodelets (ParamReader) and the offline replay (YamlReader).
+// The YAML keys of every stage: field name = key. One list serves the nodelets (ParamReader) and the offline
+// replay (YamlReader).
 #pragma once
 
 #include "atlas/pipeline.hpp"

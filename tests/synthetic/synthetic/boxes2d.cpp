@@ -9,8 +9,8 @@ namespace atlas::synthetic {
 namespace {
 
 constexpr int kFewestPixels = 4;
-constexpr double kSmallest = 8.0;      // px
-constexpr double kMostHidden = 0.7;    // of the object
+constexpr double kSmallest = 8.0;    // px
+constexpr double kMostHidden = 0.7;  // of the object
 
 struct Extent {
   int u1 = 1 << 20, v1 = 1 << 20, u2 = -1, v2 = -1, pixels = 0;
@@ -58,7 +58,8 @@ std::vector<TruthBox2d> visibleBoxes(const View& view, const CameraView& camera,
   return boxes;
 }
 
-std::vector<FakeDetection> detect(const std::vector<TruthBox2d>& boxes, const Camera& camera, const NoiseOptions& noise, Random& random) {
+std::vector<FakeDetection> detect(const std::vector<TruthBox2d>& boxes, const Camera& camera,
+                                  const NoiseOptions& noise, Random& random) {
   std::vector<FakeDetection> detections;
   for (const TruthBox2d& box : boxes) {
     double sides[4] = {box.x1, box.y1, box.x2, box.y2};
@@ -66,14 +67,18 @@ std::vector<FakeDetection> detect(const std::vector<TruthBox2d>& boxes, const Ca
     for (double& side : sides) side += std::min(noise.detection_px, 0.05 * size) * random.normal();
     const bool missed = random.chance(noise.detection_missed_fraction);
     const double luck = random.uniform();
-    const double confidence = std::clamp(0.97 - 0.35 * (1.0 - box.visible_fraction) - 2.0 / size - 0.1 * luck, 0.26, 0.99);
+    const double confidence =
+        std::clamp(0.97 - 0.35 * (1.0 - box.visible_fraction) - 2.0 / size - 0.1 * luck, 0.26, 0.99);
     if (missed || box.visible_fraction < 1.0 - kMostHidden || size < kSmallest) continue;
-    for (int k = 0; k < 4; ++k) sides[k] = std::clamp(sides[k], -0.5, (k % 2 == 0 ? camera.width : camera.height) - 0.5);
+    for (int k = 0; k < 4; ++k)
+      sides[k] = std::clamp(sides[k], -0.5, (k % 2 == 0 ? camera.width : camera.height) - 0.5);
     if (sides[2] - sides[0] < 2.0 || sides[3] - sides[1] < 2.0) continue;
     detections.push_back({sides[0], sides[1], sides[2], sides[3], confidence, box.class_id});
-    if (box.class_id == static_cast<int>(ObjectClass::kBicycle)) {  // feet on the pedals, 20 cm above the road
+    if (box.class_id ==
+        static_cast<int>(ObjectClass::kBicycle)) {  // feet on the pedals, 20 cm above the road
       const double feet = sides[1] + 0.87 * (sides[3] - sides[1]);
-      detections.push_back({sides[0], sides[1], sides[2], feet, 0.95 * confidence, static_cast<int>(ObjectClass::kPerson)});
+      detections.push_back(
+          {sides[0], sides[1], sides[2], feet, 0.95 * confidence, static_cast<int>(ObjectClass::kPerson)});
     }
   }
   return detections;

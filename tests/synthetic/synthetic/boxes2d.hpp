@@ -19,8 +19,9 @@ struct FakeDetection {
   double confidence;
   int class_id;
 };
-/// Boxes with noise; none for objects that are hidden by more than 70 %, smaller than 8 px, or missed. A cyclist gives
-/// a bicycle and a person.
-std::vector<FakeDetection> detect(const std::vector<TruthBox2d>& boxes, const Camera& camera, const NoiseOptions& noise, Random& random);
+/// Boxes with noise; none for objects that are hidden by more than 70 %, smaller than 8 px, or missed. A
+/// cyclist gives a bicycle and a person.
+std::vector<FakeDetection> detect(const std::vector<TruthBox2d>& boxes, const Camera& camera,
+                                  const NoiseOptions& noise, Random& random);
 
 }  // namespace atlas::synthetic

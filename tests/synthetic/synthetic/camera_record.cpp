@@ -41,9 +41,11 @@ class CameraFolder {
         boxes_(record / "truth" / "boxes2d" / (camera.name + ".csv"), TextFile::LineEnd::kUnix),
         random_(world.options().seed, camera.name) {
     boxes_.print("stamp_ns,frame,object,class,x1,y1,x2,y2,visible_fraction,depth,range\n");
-    if (!camera.thermal()) yolo_ = std::make_unique<TextFile>(record / "yolo" / (camera.name + ".txt"), TextFile::LineEnd::kUnix);
+    if (!camera.thermal())
+      yolo_ = std::make_unique<TextFile>(record / "yolo" / (camera.name + ".txt"), TextFile::LineEnd::kUnix);
     if (world.options().video) {
-      video_ = std::make_unique<VideoEncoder>(record / camera.name / "video.mp4", camera.width, camera.height, camera.thermal() ? 30 : 10);
+      video_ = std::make_unique<VideoEncoder>(record / camera.name / "video.mp4", camera.width, camera.height,
+                                              camera.thermal() ? 30 : 10);
     }
   }
 
@@ -72,7 +74,8 @@ class CameraFolder {
  private:
   void addThermal(int frame, Stamp stamp, const View& view) {
     const ThermalPicture picture = paintThermal(view, view_, static_cast<std::uint32_t>(frame));
-    timestamps_.print("%lld,%d,%.2f,%.2f\n", static_cast<long long>(stamp), frame, picture.minimum_degc, picture.maximum_degc);
+    timestamps_.print("%lld,%d,%.2f,%.2f\n", static_cast<long long>(stamp), frame, picture.minimum_degc,
+                      picture.maximum_degc);
     if (video_) video_->addGrey(picture.grey);
   }
 
@@ -80,15 +83,15 @@ class CameraFolder {
     const Camera& camera = view_.camera();
     const std::vector<TruthBox2d> boxes = visibleBoxes(view, view_, world_.scene());
     for (const TruthBox2d& b : boxes) {
-      boxes_.print("%lld,%d,%d,%d,%.1f,%.1f,%.1f,%.1f,%.4f,%.4f,%.4f\n", static_cast<long long>(stamp), frame, b.object, b.class_id,
-                   b.x1, b.y1, b.x2, b.y2, b.visible_fraction, b.depth_m, b.range_m);
+      boxes_.print("%lld,%d,%d,%d,%.1f,%.1f,%.1f,%.1f,%.4f,%.4f,%.4f\n", static_cast<long long>(stamp), frame,
+                   b.object, b.class_id, b.x1, b.y1, b.x2, b.y2, b.visible_fraction, b.depth_m, b.range_m);
     }
     if (!yolo_) return;
     for (const FakeDetection& d : detect(boxes, camera, world_.options().noise, random_)) {
       // Layout B: centre and size, by width and height; the left edge of the image is pixel -1/2.
-      yolo_->print("%d, %.4f, %.4f, %.4f, %.4f, %.4f, %d\n", frame, (0.5 * (d.x1 + d.x2) + 0.5) / camera.width,
-                   (0.5 * (d.y1 + d.y2) + 0.5) / camera.height, (d.x2 - d.x1) / camera.width, (d.y2 - d.y1) / camera.height,
-                   d.confidence, d.class_id);
+      yolo_->print("%d, %.4f, %.4f, %.4f, %.4f, %.4f, %d\n", frame,
+                   (0.5 * (d.x1 + d.x2) + 0.5) / camera.width, (0.5 * (d.y1 + d.y2) + 0.5) / camera.height,
+                   (d.x2 - d.x1) / camera.width, (d.y2 - d.y1) / camera.height, d.confidence, d.class_id);
     }
   }
 
@@ -98,7 +101,8 @@ class CameraFolder {
     for (int v = 0; v < camera.height; ++v) {
       for (int u = 0; u < camera.width; ++u) {
         const auto at = static_cast<std::size_t>(v * camera.width + u);
-        const long value = view.hit[at] == kHitNothing ? 0 : std::lround(256.0 * static_cast<double>(view.depth[at]));
+        const long value =
+            view.hit[at] == kHitNothing ? 0 : std::lround(256.0 * static_cast<double>(view.depth[at]));
         depth.at<std::uint16_t>(v, u) = value > 65535 ? std::uint16_t{0} : static_cast<std::uint16_t>(value);
       }
     }
@@ -106,7 +110,8 @@ class CameraFolder {
     std::filesystem::create_directories(folder);
     char name[32];
     std::snprintf(name, sizeof name, "%06d.png", frame);
-    if (!cv::imwrite((folder / name).string(), depth)) throw std::runtime_error("cannot write " + (folder / name).string());
+    if (!cv::imwrite((folder / name).string(), depth))
+      throw std::runtime_error("cannot write " + (folder / name).string());
   }
 
   const World& world_;
@@ -129,7 +134,8 @@ std::vector<Stamp> frameStamps(const World& world, const std::string& camera) {
   }
   Random random(world.options().seed, "camera_ir stamps");
   for (Stamp grid = start + kIrPhase; grid < world.end() - kIrJitter; grid += kIrPeriod) {
-    stamps.push_back(grid + static_cast<Duration>(random.uniform(-1.0, 1.0) * static_cast<double>(kIrJitter)));
+    stamps.push_back(grid +
+                     static_cast<Duration>(random.uniform(-1.0, 1.0) * static_cast<double>(kIrJitter)));
   }
   return stamps;
 }

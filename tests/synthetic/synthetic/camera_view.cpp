@@ -9,20 +9,23 @@
 namespace atlas::synthetic {
 namespace {
 
-constexpr double kSmallSight = 130.0;  // m: cars, trees and people beyond are not drawn, as they are a few pixels
-constexpr float kNearPlane = 0.05F;    // m
+constexpr double kSmallSight =
+    130.0;  // m: cars, trees and people beyond are not drawn, as they are a few pixels
+constexpr float kNearPlane = 0.05F;  // m
 
 std::array<Eigen::Vector3f, 8> corners(const Primitive& p, const Pose& T_camera_city) {
   std::array<Eigen::Vector3f, 8> result;
   const double c = std::cos(p.yaw), s = std::sin(p.yaw);
   for (int i = 0; i < 8; ++i) {
-    const double x = (i & 1 ? 1 : -1) * p.half.x(), y = (i & 2 ? 1 : -1) * p.half.y(), z = (i & 4 ? 1 : -1) * p.half.z();
+    const double x = (i & 1 ? 1 : -1) * p.half.x(), y = (i & 2 ? 1 : -1) * p.half.y(),
+                 z = (i & 4 ? 1 : -1) * p.half.z();
     result[i] = (T_camera_city * (p.centre + Eigen::Vector3d(c * x - s * y, s * x + c * y, z))).cast<float>();
   }
   return result;
 }
 
-/// The tiles between whose two bounding planes (coordinate = bound * z) not all corners lie outside on one side.
+/// The tiles between whose two bounding planes (coordinate = bound * z) not all corners lie outside on one
+/// side.
 template <class Bounds>
 std::pair<int, int> touched(const Bounds& bounds, const std::array<Eigen::Vector3f, 8>& p, int axis) {
   int first = static_cast<int>(bounds.size()), last = -1;
@@ -55,7 +58,9 @@ float farthest(const RayPacket& packet) {
 }  // namespace
 
 CameraView::CameraView(const Camera& camera)
-    : camera_(camera), columns_((camera.width + kTile - 1) / kTile), rows_((camera.height + kTile - 1) / kTile) {
+    : camera_(camera),
+      columns_((camera.width + kTile - 1) / kTile),
+      rows_((camera.height + kTile - 1) / kTile) {
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   tangent_x_.resize(pixels);
   tangent_y_.resize(pixels);
@@ -85,7 +90,8 @@ int CameraView::pixelOf(int column, int row, int i) const {
 RayPacket CameraView::tileRays(const View& view, int column, int row) const {
   RayPacket packet;
   packet.origin = view.T_city_camera.translation;
-  const int width = std::min(kTile, camera_.width - column * kTile), height = std::min(kTile, camera_.height - row * kTile);
+  const int width = std::min(kTile, camera_.width - column * kTile),
+            height = std::min(kTile, camera_.height - row * kTile);
   packet.size = width * height;
   const Eigen::Matrix3f R = view.T_city_camera.rotation.toRotationMatrix().cast<float>();
   int n = 0;
@@ -119,7 +125,8 @@ std::vector<CameraView::Reach> CameraView::reaches(const View& view) const {
     const auto [column_begin, column_end] = touched(column_bounds_, p, 0);
     if (column_begin >= column_end) continue;
     const auto [row_begin, row_end] = touched(row_bounds_, p, 1);
-    if (row_begin < row_end) result.push_back({std::max(near, 0.0F), index, column_begin, column_end, row_begin, row_end});
+    if (row_begin < row_end)
+      result.push_back({std::max(near, 0.0F), index, column_begin, column_end, row_begin, row_end});
   }
   std::sort(result.begin(), result.end(), [](const Reach& a, const Reach& b) {
     return a.nearest != b.nearest ? a.nearest < b.nearest : a.index < b.index;
@@ -136,11 +143,13 @@ View CameraView::look(const Scene& scene, const Pose& T_city_camera, double t_s)
   std::vector<std::vector<Reach>> of_tile(static_cast<std::size_t>(columns_ * rows_));
   for (const Reach& reach : reaches(view)) {
     for (int row = reach.row_begin; row < reach.row_end; ++row) {
-      for (int column = reach.column_begin; column < reach.column_end; ++column) of_tile[row * columns_ + column].push_back(reach);
+      for (int column = reach.column_begin; column < reach.column_end; ++column)
+        of_tile[row * columns_ + column].push_back(reach);
     }
   }
   std::vector<PreparedPrimitive> prepared;
-  for (const Primitive& primitive : view.snapshot.primitives) prepared.push_back(prepare(primitive, T_city_camera.translation));
+  for (const Primitive& primitive : view.snapshot.primitives)
+    prepared.push_back(prepare(primitive, T_city_camera.translation));
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       RayPacket packet = tileRays(view, column, row);
@@ -159,14 +168,16 @@ View CameraView::look(const Scene& scene, const Pose& T_city_camera, double t_s)
   return view;
 }
 
-std::vector<CameraView::Outline> CameraView::outlines(const View& view, const std::vector<int>& objects) const {
+std::vector<CameraView::Outline> CameraView::outlines(const View& view,
+                                                      const std::vector<int>& objects) const {
   std::vector<Outline> result;
   for (const int object : objects) result.push_back({object, 0});
   std::vector<std::vector<Reach>> parts(objects.size());
   for (const Reach& reach : reaches(view)) {
     const int object = view.snapshot.primitives[reach.index].object;
     const auto it = std::lower_bound(objects.begin(), objects.end(), object);
-    if (it != objects.end() && *it == object) parts[static_cast<std::size_t>(it - objects.begin())].push_back(reach);
+    if (it != objects.end() && *it == object)
+      parts[static_cast<std::size_t>(it - objects.begin())].push_back(reach);
   }
   for (std::size_t k = 0; k < objects.size(); ++k) {
     Reach all{0.0F, 0, columns_, 0, rows_, 0};
@@ -180,7 +191,8 @@ std::vector<CameraView::Outline> CameraView::outlines(const View& view, const st
       for (int column = all.column_begin; column < all.column_end; ++column) {
         RayPacket packet = tileRays(view, column, row);
         for (const Reach& reach : parts[k]) {
-          tracePrimitive(packet, prepare(view.snapshot.primitives[reach.index], packet.origin), reach.index, 0, packet.size);
+          tracePrimitive(packet, prepare(view.snapshot.primitives[reach.index], packet.origin), reach.index,
+                         0, packet.size);
         }
         for (int i = 0; i < packet.size; ++i) result[k].pixels += packet.hit[i] >= 0;
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a camera sees, by casting one ray through the centre of every pixel of the distorted image, tile by tile: each
-// tile knows the primitives that can reach into it, nearest first, and stops when the rest lies behind.
+// What a camera sees, by casting one ray through the centre of every pixel of the distorted image, tile by
+// tile: each tile knows the primitives that can reach into it, nearest first, and stops when the rest lies
+// behind.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@ constexpr int kTile = 16;         ///< px
 struct View {
   Pose T_city_camera;
   Scene::Snapshot snapshot;
-  std::vector<float> depth;        ///< z-depth, m; kSight where nothing was hit
-  std::vector<std::int32_t> hit;   ///< primitive of the snapshot or kHit...
+  std::vector<float> depth;       ///< z-depth, m; kSight where nothing was hit
+  std::vector<std::int32_t> hit;  ///< primitive of the snapshot or kHit...
 };
 
 class CameraView {

@@ -50,7 +50,8 @@ std::vector<Camera> rigCameras(double rgb_scale) {
        0.000063920298421256020, -0.015465074923160538},
   };
   for (Camera& camera : cameras) {  // whole pixels keep their centres: u' + 1/2 = scale (u + 1/2)
-    camera.width = 2 * static_cast<int>(std::lround(0.5 * camera.width * rgb_scale));  // even, for 4:2:0 video
+    camera.width =
+        2 * static_cast<int>(std::lround(0.5 * camera.width * rgb_scale));  // even, for 4:2:0 video
     camera.height = 2 * static_cast<int>(std::lround(0.5 * camera.height * rgb_scale));
     camera.fx *= rgb_scale;
     camera.fy *= rgb_scale;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Colours and temperatures of what a camera sees: sun and sky, windows, markings, paving, leaves; warm people and engines.
+// Colours and temperatures of what a camera sees: sun and sky, windows, markings, paving, leaves; warm people
+// and engines.
 #pragma once
 
 #include <cstdint>

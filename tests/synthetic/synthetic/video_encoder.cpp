@@ -61,7 +61,8 @@ VideoEncoder::VideoEncoder(const std::filesystem::path& file, int width, int hei
   check(av_opt_set(c.context->priv_data, "crf", "24", 0), "crf");
   // One thread and no pool: the order of work, and with it every bit, is fixed.
   check(av_opt_set(c.context->priv_data, "x265-params",
-                   "pools=none:frame-threads=1:wpp=0:log-level=error:info=0:open-gop=0:keyint=30", 0), "x265-params");
+                   "pools=none:frame-threads=1:wpp=0:log-level=error:info=0:open-gop=0:keyint=30", 0),
+        "x265-params");
   check(avcodec_open2(c.context, encoder, nullptr), "open libx265");
   c.stream = avformat_new_stream(c.format, nullptr);
   check(avcodec_parameters_from_context(c.stream->codecpar, c.context), "parameters");
@@ -91,14 +92,17 @@ void VideoEncoder::addRgb(const std::vector<std::uint8_t>& rgb) {
       for (int k = 0; k < 4; ++k) {
         const int y = v + k / 2, x = u + k % 2;
         const std::uint8_t* p = &rgb[3 * static_cast<std::size_t>(y * frame.width + x)];
-        frame.data[0][y * frame.linesize[0] + x] = static_cast<std::uint8_t>(((66 * p[0] + 129 * p[1] + 25 * p[2] + 128) >> 8) + 16);
+        frame.data[0][y * frame.linesize[0] + x] =
+            static_cast<std::uint8_t>(((66 * p[0] + 129 * p[1] + 25 * p[2] + 128) >> 8) + 16);
         red += p[0];
         green += p[1];
         blue += p[2];
       }
       const int at_u = v / 2 * frame.linesize[1] + u / 2, at_v = v / 2 * frame.linesize[2] + u / 2;
-      frame.data[1][at_u] = static_cast<std::uint8_t>((-38 * red - 74 * green + 112 * blue + 4 * 128 + 4 * 128 * 256) >> 10);
-      frame.data[2][at_v] = static_cast<std::uint8_t>((112 * red - 94 * green - 18 * blue + 4 * 128 + 4 * 128 * 256) >> 10);
+      frame.data[1][at_u] =
+          static_cast<std::uint8_t>((-38 * red - 74 * green + 112 * blue + 4 * 128 + 4 * 128 * 256) >> 10);
+      frame.data[2][at_v] =
+          static_cast<std::uint8_t>((112 * red - 94 * green - 18 * blue + 4 * 128 + 4 * 128 * 256) >> 10);
     }
   }
   encode(false);

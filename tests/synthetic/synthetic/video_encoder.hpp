@@ -11,14 +11,16 @@ namespace atlas::synthetic {
 
 class VideoEncoder {
  public:
-  /// Throws std::runtime_error when libx265 is not there or the file cannot be written. Width and height are even.
+  /// Throws std::runtime_error when libx265 is not there or the file cannot be written. Width and height are
+  /// even.
   VideoEncoder(const std::filesystem::path& file, int width, int height, int frames_per_second);
   ~VideoEncoder();
   VideoEncoder(const VideoEncoder&) = delete;
   VideoEncoder& operator=(const VideoEncoder&) = delete;
   /// RGB, 3 bytes a pixel.
   void addRgb(const std::vector<std::uint8_t>& rgb);
-  /// Grey as a colour video without colour: full-range grey g becomes limited-range luma, as a decoder undoes it.
+  /// Grey as a colour video without colour: full-range grey g becomes limited-range luma, as a decoder undoes
+  /// it.
   void addGrey(const std::vector<std::uint8_t>& grey);
   void close();
 

@@ -11,7 +11,8 @@ constexpr atlas::Stamp kBegin = 1'000'000'000'000;
 
 TEST(BagCheck, CleanTopicHasNoProblem) {
   atlas_loader::TopicStatistics statistics;
-  for (int i = 0; i < 1000; ++i) statistics.add(kBegin + i * kStep, kBegin + i * kStep + 2 * atlas::kMillisecond);
+  for (int i = 0; i < 1000; ++i)
+    statistics.add(kBegin + i * kStep, kBegin + i * kStep + 2 * atlas::kMillisecond);
   const auto check = statistics.result("sensor_msgs/Imu");
   EXPECT_EQ(check.messages, 1000U);
   EXPECT_NEAR(check.rate_hz, 100.0, 1e-9);
@@ -24,7 +25,7 @@ TEST(BagCheck, FindsGapBackwardsDuplicateAndDelay) {
   atlas::Stamp stamp = kBegin;
   for (int i = 0; i < 300; ++i) {
     stamp += 10'000'000;
-    if (i == 100) stamp += 3 * atlas::kSecond;  // gap
+    if (i == 100) stamp += 3 * atlas::kSecond;                                     // gap
     if (i == 150) statistics.add(stamp - 20'000'000, stamp + 5 * atlas::kSecond);  // back
     statistics.add(stamp, stamp + 5 * atlas::kSecond);
     if (i == 200) statistics.add(stamp, stamp + 5 * atlas::kSecond);  // twice
@@ -44,7 +45,8 @@ TEST(BagCheck, MemoryIsBounded) {
 
 TEST(BagCheck, GravityInWords) {
   EXPECT_EQ(atlas_loader::judgeGravity("/imu", {0.1, 0.2, 9.8}, 9.81), "");
-  EXPECT_NE(atlas_loader::judgeGravity("/imu", {0.3, -0.4, -9.55}, 9.6).find("sign inverted"), std::string::npos);
+  EXPECT_NE(atlas_loader::judgeGravity("/imu", {0.3, -0.4, -9.55}, 9.6).find("sign inverted"),
+            std::string::npos);
   EXPECT_NE(atlas_loader::judgeGravity("/imu", {0.0, 9.8, 0.1}, 9.81).find("rotated"), std::string::npos);
   EXPECT_NE(atlas_loader::judgeGravity("/imu", {0.0, 0.0, 1.0}, 1.0).find("not gravity"), std::string::npos);
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A value that goes into a message and back is unchanged, bit by bit; what is unknown stays unknown; nonsense is refused.
+// A value that goes into a message and back is unchanged, bit by bit; what is unknown stays unknown; nonsense
+// is refused.
 #include "atlas_ros/conversions.hpp"
 
 #include <gtest/gtest.h>
-#include <opencv2/core.hpp>
 
 #include <cmath>
 #include <limits>
+#include <opencv2/core.hpp>
 
 namespace {
 
@@ -90,7 +91,8 @@ TEST(GnssHeading, KeepsYawToRoundingAndVariance) {
     EXPECT_NEAR(back->yaw_rad, yaw, 1e-15);
     EXPECT_EQ(*back->variance_rad2, 0.01);
   }
-  EXPECT_FALSE(atlas_ros::headingFromMsg(atlas_ros::toMsg(atlas::GnssHeading{kStamp, 1.0, {}}))->variance_rad2.has_value());
+  EXPECT_FALSE(atlas_ros::headingFromMsg(atlas_ros::toMsg(atlas::GnssHeading{kStamp, 1.0, {}}))
+                   ->variance_rad2.has_value());
 }
 
 TEST(Odometry, RoundTripIsExact) {
@@ -123,7 +125,8 @@ TEST(PointBatches, RoundTripIsExactWithNaNPoints) {
   const auto back = atlas_ros::fromMsg(atlas_ros::toMsg(batched));
   ASSERT_TRUE(back);
   ASSERT_EQ((*back)->sweep->points.size(), 5U);
-  EXPECT_EQ(std::memcmp((*back)->sweep->points.data(), sweep->points.data(), 5 * sizeof(atlas::LidarPoint)), 0);
+  EXPECT_EQ(std::memcmp((*back)->sweep->points.data(), sweep->points.data(), 5 * sizeof(atlas::LidarPoint)),
+            0);
   ASSERT_EQ((*back)->batches.size(), 2U);
   EXPECT_EQ((*back)->batches[1].first, 3U);
   EXPECT_EQ((*back)->batches[0].stamp, kStamp - 5);

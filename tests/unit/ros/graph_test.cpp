@@ -6,8 +6,9 @@
 
 namespace {
 
-atlas_msgs::StageHello hello(const std::string& stage, const std::string& process, std::vector<std::string> inputs,
-                             std::vector<std::string> outputs, std::vector<std::string> links = {}) {
+atlas_msgs::StageHello hello(const std::string& stage, const std::string& process,
+                             std::vector<std::string> inputs, std::vector<std::string> outputs,
+                             std::vector<std::string> links = {}) {
   atlas_msgs::StageHello msg;
   msg.stage = stage;
   msg.process = process;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Messages that arrive in any order leave in the order of their stamps; what is too late is counted; a loop begins anew.
+// Messages that arrive in any order leave in the order of their stamps; what is too late is counted; a loop
+// begins anew.
 #include "ingest.hpp"
 
 #include <gtest/gtest.h>
@@ -137,7 +138,8 @@ TEST(TopicNames, KindsByEnding) {
   EXPECT_EQ(atlas_loader::kindOfTopicName("lidar_left/points"), atlas::StreamKind::kPoints);
   EXPECT_EQ(atlas_loader::kindOfTopicName("gnss/heading"), atlas::StreamKind::kGnssHeading);
   EXPECT_EQ(atlas_loader::kindOfTopicName("imu/gnss/fix"), atlas::StreamKind::kGnssFix);
-  EXPECT_EQ(atlas_loader::kindOfTopicName("camera_ir/image_raw/compressed"), atlas::StreamKind::kCompressedImage);
+  EXPECT_EQ(atlas_loader::kindOfTopicName("camera_ir/image_raw/compressed"),
+            atlas::StreamKind::kCompressedImage);
   EXPECT_EQ(atlas_loader::kindOfTopicName("something/else"), std::nullopt);
 }
 

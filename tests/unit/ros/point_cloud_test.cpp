@@ -11,7 +11,8 @@ namespace {
 
 using sensor_msgs::PointField;
 
-void addField(sensor_msgs::PointCloud2& msg, const std::string& name, std::uint8_t type, std::uint32_t offset) {
+void addField(sensor_msgs::PointCloud2& msg, const std::string& name, std::uint8_t type,
+              std::uint32_t offset) {
   PointField field;
   field.name = name;
   field.datatype = type;

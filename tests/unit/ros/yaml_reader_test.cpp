@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Missing, mistyped and unknown keys are refused by name; every configuration that ships can be read completely.
+// Missing, mistyped and unknown keys are refused by name; every configuration that ships can be read
+// completely.
 #include "atlas_ros/yaml_reader.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,8 @@ TEST(YamlReader, NamesWhatIsWrong) {
   double value = 0;
   int count = 0;
   atlas_ros::YamlReader reader(node, "x.yaml: deskew");
-  EXPECT_EQ(messageOf([&] { reader.read("min_range_m", value); }), "x.yaml: deskew: missing parameter min_range_m");
+  EXPECT_EQ(messageOf([&] { reader.read("min_range_m", value); }),
+            "x.yaml: deskew: missing parameter min_range_m");
   EXPECT_EQ(messageOf([&] { reader.read("batches_per_sweep", count); }),
             "x.yaml: deskew: parameter batches_per_sweep has the wrong type");
   std::vector<std::string> lidars;
@@ -36,7 +38,8 @@ TEST(Configurations, EveryStageSectionIsComplete) {
     const YAML::Node root = YAML::LoadFile(std::string(ATLAS_REPO_ROOT) + "/atlas_bringup/config/" + name);
     const auto check = [&](const char* section, auto params) {
       atlas_ros::YamlReader reader(root[section], std::string(name) + ": " + section);
-      EXPECT_NO_THROW(readParams(reader, params); reader.rejectUnread(); validate(params)) << name << " " << section;
+      EXPECT_NO_THROW(readParams(reader, params); reader.rejectUnread(); validate(params))
+          << name << " " << section;
     };
     check("localization", atlas::LocalizationParams());
     check("deskew", atlas::DeskewParams());
