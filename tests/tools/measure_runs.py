@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Measures whole runs on synthetic drives and prints tests/bench/BENCHMARK.md's tables.
+"""Measures whole runs on synthetic drives and prints the tables of tests/bench/BENCHMARK.md.
 
-    ./atlas run python3 tests/tools/measure_runs.py [--seed 1] [--durations 30 120] > tables.md
+    ./atlas run python3 tests/tools/measure_runs.py [--seed 1] [--durations 30 120] [--update tests/bench/BENCHMARK.md]
 
 For each drive: atlas_replay as it is, then with --write deskewed and evaluate_run. CPU time is user + system of the
 process, so it counts the work and hardly depends on what else the machine does; wall time does, and is only worth
@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # The program that the first paper's authors published, patched so that it survives, on such a drive on this kind of
 # machine. There is no figure for what it was not measured for.
 PUBLISHED = {"cpu": 2.9, "memory_gb": 0.98, "point_m": 0.86, "horizontal_m": 0.6, "heading_deg": 8.7}
+BEGIN, END = "<!-- measured -->", "<!-- end of measured -->"
 # group, quantity, statistic (None: a plain number), what it is called
 ROWS = [
     ("trajectory", "horizontal_error_m", "rmse", "horizontal position error, RMSE, m"),
@@ -166,23 +167,50 @@ def comparison(results):
     return [[name, text(theirs), text(value), "-" if not value else f"{theirs / value:.3g} x"] for name, theirs, value in ours]
 
 
+def report(about, results, seed, repeats):
+    """The tables as Markdown."""
+    return "\n".join([
+        f"{about}; seed {seed}; median of {repeats} run(s).\n",
+        table(["drive", "writes de-skewed scans", "CPU s per s", "wall s per s", "peak memory, MB"], speed_rows(results)),
+        table([f"drive of {next(iter(results))} s", "published program", "this suite", "better by"], comparison(results)),
+        table(["error against the truth", *(f"{duration} s" for duration in results)],
+              [[name, *(text(value_of(result["errors"], *key)) for result in results.values())] for *key, name in ROWS])])
+
+
+def around(document):
+    """Text before and after the marks of a document."""
+    before, _, rest = document.read_text().partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not end:
+        sys.exit(f"measure_runs: {document}: no '{BEGIN}' followed by '{END}'")
+    return before, after
+
+
+def update(document, tables):
+    """Puts the tables between the two marks of a document."""
+    before, after = around(document)
+    document.write_text(f"{before}{BEGIN}\n\n{tables}\n{END}{after}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--durations", type=int, nargs="+", default=[30, 120], metavar="S")
     parser.add_argument("--repeats", type=int, default=1, metavar="N", help="runs of each kind, the median is printed")
     parser.add_argument("--folder", type=Path, default=ROOT / ".build/demo", help="for drives (kept) and outputs (removed)")
+    parser.add_argument("--update", type=Path, metavar="FILE", help="put the tables between the marks of this document")
     parser.add_argument("--json", type=Path, metavar="FILE", help="all numbers")
     arguments = parser.parse_args()
+    if arguments.update:
+        around(arguments.update)  # what is wrong with it is better known before than after
     about = machine()
     results = {}
     for duration in arguments.durations:
         results[duration] = measure(make_drive(arguments.folder, arguments.seed, duration), arguments.folder, arguments.repeats)
-    print(f"{about}; seed {arguments.seed}; median of {arguments.repeats} run(s)\n")
-    print(table(["drive", "writes de-skewed scans", "CPU s per s", "wall s per s", "peak memory, MB"], speed_rows(results)))
-    print(table(["", "published program", "this suite", "better by"], comparison(results)))
-    print(table(["error against the truth", *(f"{duration} s" for duration in results)],
-                [[name, *(text(value_of(result["errors"], *key)) for result in results.values())] for *key, name in ROWS]))
+    tables = report(about, results, arguments.seed, arguments.repeats)
+    print(tables)
+    if arguments.update:
+        update(arguments.update, tables)
     if arguments.json:
         arguments.json.write_text(json.dumps({"about": about, "results": results}, indent=1) + "\n")
 
