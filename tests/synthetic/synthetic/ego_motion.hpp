@@ -12,7 +12,7 @@
 
 namespace atlas::synthetic {
 
-/// What an ideal IMU measures, imu frame. The Earth's rotation (0.004 deg/s) is left out.
+/// What an ideal IMU measures on an Earth that does not rotate, imu frame; ImuModel adds the rotation.
 struct ImuKinematics {
   Eigen::Vector3d angular_velocity_radps;
   Eigen::Vector3d specific_force_mps2;  ///< points up at rest

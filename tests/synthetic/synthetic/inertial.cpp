@@ -17,6 +17,14 @@ constexpr Duration kSlowPhase = 2'467'905;                // mag and pressure
 constexpr double kInclination_rad = 66.2 * M_PI / 180.0;  // of the Earth's field in Brno
 constexpr double kFieldNorm = 1.42;                       // Xsens units, norm in the real sample
 
+constexpr double kEarthRate_radps = 7.292115e-5;  // WGS84
+
+/// The Earth's rotation in map (ENU) axes.
+Eigen::Vector3d earthRotation(double latitude_deg) {
+  const double latitude = latitude_deg * M_PI / 180.0;
+  return kEarthRate_radps * Eigen::Vector3d(0.0, std::cos(latitude), std::sin(latitude));
+}
+
 Eigen::Vector3d vectorOf(Random& random) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
   return {x, y, z};
@@ -106,10 +114,18 @@ ImuReading ImuModel::read(Stamp stamp) {
                                       noise.accel_density_mps2_rthz * per_sample * vectorOf(random_);
   const Eigen::Quaterniond R_map_imu = world_.T_map_imu(measured).rotation;
   const Eigen::Quaterniond R_map_before = world_.T_map_imu(measured - kImuPeriod).rotation;
+  // Gyroscopes see the Earth turn, accelerometers the Coriolis acceleration of moving on it.
+  const Eigen::Vector3d earth = earthRotation(world_.options().anchor.latitude_deg);
+  const Eigen::Vector3d v_map = (world_.T_map_imu(measured + kImuPeriod).translation -
+                                 world_.T_map_imu(measured - kImuPeriod).translation) /
+                                (2.0 * kDt);
+  const Eigen::Vector3d earth_imu = R_map_imu.conjugate() * earth;
   ImuReading reading;
-  reading.angular_velocity_radps = ideal.angular_velocity_radps + gyro_error;
-  reading.specific_force_mps2 = ideal.specific_force_mps2 + accel_error;
-  reading.increment = (R_map_before.conjugate() * R_map_imu * expSo3(gyro_error * kDt)).normalized();
+  reading.angular_velocity_radps = ideal.angular_velocity_radps + earth_imu + gyro_error;
+  reading.specific_force_mps2 =
+      ideal.specific_force_mps2 + R_map_imu.conjugate() * (2.0 * earth.cross(v_map)) + accel_error;
+  reading.increment =
+      (R_map_before.conjugate() * R_map_imu * expSo3((earth_imu + gyro_error) * kDt)).normalized();
   RollPitchYaw rpy = toRollPitchYaw(R_map_imu);
   rpy.roll += slow_[6].value();
   rpy.pitch += slow_[7].value();

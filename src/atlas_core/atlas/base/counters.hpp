@@ -17,6 +17,8 @@ class Counters {
   void skip(const std::string& what, Reason reason, std::uint64_t n = 1) {
     counts_["skipped " + what + ": " + toString(reason)] += n;
   }
+  /// The count itself, for loops that must not look it up each time; valid as long as this object.
+  std::uint64_t& cell(const std::string& key) { return counts_[key]; }
   [[nodiscard]] std::uint64_t get(const std::string& key) const {
     const auto it = counts_.find(key);
     return it == counts_.end() ? 0 : it->second;

@@ -45,17 +45,23 @@ Transition move(State& state, const Earth& earth, const Inertial& first, const I
 }
 
 void moveCovariance(Matrix& P, const Transition& transition, const ProcessNoise& noise) {
-  // (I + D) P (I + D)' = P + D P + (D P)' + D (D P)'
-  const Eigen::Matrix<double, kMoving, kSize> D = transition.rows<kSize>(P);
-  const Eigen::Matrix<double, kSize, kMoving> D_transposed = D.transpose();
-  const Eigen::Matrix<double, kMoving, kMoving> second = transition.rows<kMoving>(D_transposed);
-  P.topRows<kMoving>() += D;
-  P.leftCols<kMoving>() += D_transposed;
-  P.topLeftCorner<kMoving, kMoving>() += 0.5 * (second + second.transpose());
+  // (I + D) P (I + D)' = P + E + E' + D E with E = P D', by columns: they are contiguous in memory.
+  const double dt = transition.dt_s;
+  const Eigen::Matrix3d At = transition.A.transpose(), Ct = transition.C.transpose();
+  Eigen::Matrix<double, kSize, kMoving> E;
+  E.middleCols<3>(kTheta).noalias() = P.middleCols<3>(kGyro) * Ct;
+  const Eigen::Matrix<double, kSize, 3> theta = P.middleCols<3>(kTheta) + 0.5 * E.middleCols<3>(kTheta);
+  E.middleCols<3>(kV).noalias() = P.middleCols<3>(kAccel) * Ct;
+  E.middleCols<3>(kV).noalias() += theta * At;
+  E.middleCols<3>(kP) = dt * (P.middleCols<3>(kV) + 0.5 * E.middleCols<3>(kV));
+  const Eigen::Matrix<double, kMoving, kMoving> second = transition.rows<kMoving>(E);
+  P.leftCols<kMoving>() += E;
+  P.topLeftCorner<kMoving, kMoving>() +=
+      E.topRows<kMoving>().transpose() + 0.5 * (second + second.transpose());
+  P.topRightCorner<kMoving, kSize - kMoving>() = P.bottomLeftCorner<kSize - kMoving, kMoving>().transpose();
   P.row(kHeadingSlow) *= transition.heading_decay;
   P.col(kHeadingSlow) *= transition.heading_decay;
 
-  const double dt = transition.dt_s;
   const double accel = noise.accel_mps2_sqrt_hz * noise.accel_mps2_sqrt_hz * dt;
   const double gyro = noise.gyro_radps_sqrt_hz * noise.gyro_radps_sqrt_hz * dt;
   for (int i = 0; i < 3; ++i) {

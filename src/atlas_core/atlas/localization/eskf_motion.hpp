@@ -63,8 +63,7 @@ struct Transition {
         M.template middleRows<3>(kTheta) + 0.5 * D.template middleRows<3>(kTheta);
     D.template middleRows<3>(kV).noalias() = C * M.template middleRows<3>(kAccel);
     D.template middleRows<3>(kV).noalias() += A * theta;
-    D.template middleRows<3>(kP) =
-        dt_s * (M.template middleRows<3>(kV) + 0.5 * D.template middleRows<3>(kV));
+    D.template middleRows<3>(kP) = dt_s * (M.template middleRows<3>(kV) + 0.5 * D.template middleRows<3>(kV));
     return D;
   }
   /// Phi M.

@@ -3,7 +3,8 @@
 // filter", chapter 7; Groves 2013, "Principles of GNSS, Inertial, and Multisensor Integrated Navigation",
 // chapter 14).
 //
-//   nominal state   p, v in map (ENU at the anchor); R = R_map_imu; biases in the imu frame; the slow error of
+//   nominal state   p, v in map (ENU at the anchor); R = R_map_imu; biases in the imu frame; the slow error
+//   of
 //                   the GNSS heading; where the vehicle is on its wheels: direction of driving in the imu
 //                   frame (mount yaw and pitch, tangents) and distance of the rear axle behind the imu; lever
 //                   arm of the antenna; delay of the fixes

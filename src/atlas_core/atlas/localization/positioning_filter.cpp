@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "atlas/localization/eskf_filter.hpp"
 #include "atlas/localization/kalman_1d_filter.hpp"
 
 namespace atlas {
@@ -25,7 +26,8 @@ struct Registration {
   const char* name;
   Factory factory;
 };
-constexpr std::array<Registration, 1> kFilters{{
+constexpr std::array<Registration, 2> kFilters{{
+    {"eskf", &make<EskfFilter>},
     {"kalman_1d", &make<Kalman1dFilter>},
 }};
 
@@ -49,7 +51,7 @@ void require(const Bound& bound) {
 }  // namespace
 
 void validate(const PositioningParams& p) {
-  const std::array<Bound, 21> bounds{{
+  const std::array<Bound, 36> bounds{{
       {"gnss_horizontal_sigma_m", p.gnss_horizontal_sigma_m, 0, true},
       {"gnss_vertical_sigma_m", p.gnss_vertical_sigma_m, 0, true},
       {"gnss_heading_sigma_rad", p.gnss_heading_sigma_rad, 0, true},
@@ -71,6 +73,21 @@ void validate(const PositioningParams& p) {
       {"heading_gate_mahalanobis_sq", p.heading_gate_mahalanobis_sq, 0, true},
       {"max_consecutive_rejections", p.max_consecutive_rejections, 1, false},
       {"max_imu_gap_s", p.max_imu_gap_s, 0, true},
+      {"eskf.accelerometer_noise_mps2_sqrt_hz", p.eskf.accelerometer_noise_mps2_sqrt_hz, 0, true},
+      {"eskf.gyroscope_noise_radps_sqrt_hz", p.eskf.gyroscope_noise_radps_sqrt_hz, 0, true},
+      {"eskf.vibration_share", p.eskf.vibration_share, 0, false},
+      {"eskf.accelerometer_bias_mps2", p.eskf.accelerometer_bias_mps2, 0, true},
+      {"eskf.gyroscope_bias_radps", p.eskf.gyroscope_bias_radps, 0, true},
+      {"eskf.accelerometer_bias_walk_mps3_sqrt_hz", p.eskf.accelerometer_bias_walk_mps3_sqrt_hz, 0, false},
+      {"eskf.gyroscope_bias_walk_radps2_sqrt_hz", p.eskf.gyroscope_bias_walk_radps2_sqrt_hz, 0, false},
+      {"eskf.mount_sigma_rad", p.eskf.mount_sigma_rad, 0, false},
+      {"eskf.lever_arm_sigma_m", p.eskf.lever_arm_sigma_m, 0, false},
+      {"eskf.gnss_delay_sigma_s", p.eskf.gnss_delay_sigma_s, 0, false},
+      {"eskf.slip_sigma_mps", p.eskf.slip_sigma_mps, 0, true},
+      {"eskf.slip_sigma_rad", p.eskf.slip_sigma_rad, 0, false},
+      {"eskf.axle_height_m", p.eskf.axle_height_m, 0, false},
+      {"eskf.standing_sigma_mps", p.eskf.standing_sigma_mps, 0, true},
+      {"eskf.recovery_s", p.eskf.recovery_s, 0, true},
   }};
   for (const Bound& bound : bounds) require(bound);
   require({"imu_to_rear_axle_m", p.imu_to_rear_axle_m, -100.0, false});

@@ -3,12 +3,14 @@
 // makePositioningFilter().
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "atlas/base/counters.hpp"
 #include "atlas/base/geodesy.hpp"
+#include "atlas/localization/eskf_params.hpp"
 #include "atlas/sensor/products.hpp"
 #include "atlas/sensor/sensor.hpp"
 
@@ -39,9 +41,31 @@ struct PositioningParams {
   double max_consecutive_rejections =
       5;                       ///< after so many outliers in a row the fixes are right and the filter is not
   double max_imu_gap_s = 0.5;  ///< a longer gap restarts the filter
+  EskfParams eskf;             ///< what only the filter "eskf" uses
 };
 /// Throws std::invalid_argument that names the field and its value.
 void validate(const PositioningParams& params);
+
+/// What a measurement said against the prediction.
+struct InnovationRecord {
+  Stamp stamp = 0;
+  const char* source = "";  ///< "fix", "heading", "wheels", "standing", "not turning", "up"
+  int rows = 0;             ///< components in use
+  Eigen::Vector3d innovation = Eigen::Vector3d::Zero();  ///< m, rad, m/s or rad/s
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();       ///< square roots of the diagonal of S
+  double mahalanobis_sq = 0.0;
+  bool used = false;  ///< false: gated out
+};
+
+/// Estimated errors of the IMU with their standard deviations, imu frame.
+struct ImuBias {
+  Eigen::Vector3d gyro_radps = Eigen::Vector3d::Zero(), gyro_sigma_radps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_mps2 = Eigen::Vector3d::Zero(), accel_sigma_mps2 = Eigen::Vector3d::Zero();
+};
+
+namespace eskf {
+class History;
+}
 
 /// Events come in stamp order. The filter works in `map` = ENU at the anchor.
 class PositioningFilter {
@@ -57,6 +81,14 @@ class PositioningFilter {
   virtual std::optional<Odometry> propagate(const ImuSample& sample) = 0;
   /// No more samples: counts the fixes and headings that no sample followed.
   virtual void finish() = 0;
+
+  /// None when the filter does not estimate them, or not yet.
+  [[nodiscard]] virtual std::optional<ImuBias> imuBias() const { return std::nullopt; }
+  /// Records the run for smoothing; false when the filter has no smoother. The history must outlive the
+  /// filter.
+  virtual bool record(eskf::History* /*history*/) { return false; }
+
+  std::function<void(const InnovationRecord&)> on_innovation;  ///< one per measurement, used or not
 };
 
 /// lever_arm_imu: antenna in the imu frame, m. What the filter uses, rejects and skips goes to `counters`,
