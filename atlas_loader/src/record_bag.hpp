@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Streams a record into a bag, messages in order of their stamps. Memory does not grow with the pictures and
-// points, only with the index of messages that rosbag keeps (about 0.1 kB a message).
+// points, only with the index of messages that rosbag keeps (about 60 bytes a message).
 #pragma once
 
 #include <cstdint>
