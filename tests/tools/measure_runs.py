@@ -36,6 +36,9 @@ ROWS = [
     ("trajectory", "roll_error_deg", "rmse", "roll error, RMSE, deg"),
     ("trajectory", "pitch_error_deg", "rmse", "pitch error, RMSE, deg"),
     ("trajectory", "stamps_answered_percent", None, "IMU stamps with a pose, %"),
+    ("smoothed", "horizontal_error_m", "rmse", "smoothed: horizontal position error, RMSE, m"),
+    ("smoothed", "vertical_error_m", "rmse", "smoothed: vertical position error, RMSE, m"),
+    ("smoothed", "heading_error_deg", "rmse", "smoothed: heading error, RMSE, deg"),
     ("points", "static_error_m", "median", "point error in the map, median, m"),
     ("points", "static_error_m", "p95", "point error in the map, 95 %, m"),
     ("points", "static_error_after_5_s_of_driving_m", "median", "point error after 5 s of driving, median, m"),
@@ -167,6 +170,14 @@ def comparison(results):
     return [[name, text(theirs), text(value), "-" if not value else f"{theirs / value:.3g} x"] for name, theirs, value in ours]
 
 
+def error_rows(results):
+    """What no drive has a number for is left out."""
+    for *key, name in ROWS:
+        values = [value_of(result["errors"], *key) for result in results.values()]
+        if any(value is not None for value in values):
+            yield [name, *map(text, values)]
+
+
 def report(about, results, seed, repeats):
     """The tables as Markdown."""
     return "\n".join([
@@ -174,7 +185,7 @@ def report(about, results, seed, repeats):
         table(["drive", "writes de-skewed scans", "CPU s per s", "wall s per s", "peak memory, MB"], speed_rows(results)),
         table([f"drive of {next(iter(results))} s", "published program", "this suite", "better by"], comparison(results)),
         table(["error against the truth", *(f"{duration} s" for duration in results)],
-              [[name, *(text(value_of(result["errors"], *key)) for result in results.values())] for *key, name in ROWS])])
+              error_rows(results))])
 
 
 def around(document):
