@@ -8,6 +8,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "input_arguments.hpp"
 #include "open_input.hpp"
 #include "progress_bar.hpp"
 #include "replay.hpp"
@@ -21,11 +22,10 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "output folder")->required();
   app.add_option("--config", options.config,
                  "parameters of all stages (default: the packaged ones that fit the input)");
-  app.add_option("--calibration", options.input.calibration,
-                 "calibration folder of a record that carries none");
-  app.add_option("--start", options.input.start_s, "skip this many seconds");
-  app.add_option("--duration", options.input.duration_s, "replay this many seconds");
+  atlas_loader::addRecordArguments(app, options.input);
   app.add_option("--write", options.write, "also write: deskewed")->delimiter(',');
+  app.add_flag("--smooth", options.smooth,
+               "two passes: position and smooth first, then de-skew and map with the smoothed trajectory");
   CLI11_PARSE(app, argc, argv);
   try {
     const atlas::RunSummary summary = atlas_loader::replay(options);

@@ -17,6 +17,7 @@
 #include "atlas_ros/yaml_reader.hpp"
 #include "files/writer_stages.hpp"
 #include "progress_bar.hpp"
+#include "smooth_run.hpp"
 #include "video_decode_stage.hpp"
 #include "writer_params.hpp"
 
@@ -79,6 +80,8 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   graph.add([&](atlas::LocalGraph::Bus& bus) { return bindVideoDecoder(bus, decoder); });
   atlas::PipelineParams params;
   params.localization = configuration.section<atlas::LocalizationParams>("localization");
+  if (options.smooth)
+    params.localization.smoothed = smoothRun(options.input, params.localization, options.out);
   params.deskew = configuration.section<atlas::DeskewParams>("deskew");
   params.aggregate = configuration.section<atlas::AggregateParams>("aggregate");
   params.obstacles = configuration.section<atlas::ObstacleParams>("obstacles");

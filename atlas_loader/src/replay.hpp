@@ -15,6 +15,7 @@ struct ReplayOptions {
   std::string out;
   std::string config;              ///< YAML file; "" = packaged
   std::vector<std::string> write;  ///< extra outputs: "deskewed"
+  bool smooth = false;             ///< two passes: positioning and smoothing first
 };
 
 /// Runs to the end of the input, or until interrupted (then the summary is not complete, the outputs are

@@ -60,6 +60,10 @@ class RowFields {
 
   void assign(const Line& line);
   [[nodiscard]] std::size_t size() const { return fields_.size(); }
+  /// The field as it stands; "" beyond the last.
+  [[nodiscard]] std::string_view text(std::size_t index) const {
+    return index < fields_.size() ? fields_[index] : std::string_view();
+  }
   /// Needs exactly `count` fields.
   bool expect(std::size_t count);
   bool expectAtLeast(std::size_t count);

@@ -20,6 +20,22 @@ void readParams(Reader& reader, atlas::LocalizationParams& p) {
   reader.read("tilt_time_constant_s", q.tilt_time_constant_s);
   reader.read("velocity_heading_min_speed_mps", q.velocity_heading_min_speed_mps);
   reader.read("max_imu_gap_s", q.max_imu_gap_s);
+  atlas::EskfParams& e = q.eskf;  // of the filter "eskf"; defaults hold for cars with a MEMS IMU
+  reader.readOptional("eskf_accelerometer_noise_mps2_sqrt_hz", e.accelerometer_noise_mps2_sqrt_hz);
+  reader.readOptional("eskf_gyroscope_noise_radps_sqrt_hz", e.gyroscope_noise_radps_sqrt_hz);
+  reader.readOptional("eskf_vibration_share", e.vibration_share);
+  reader.readOptional("eskf_accelerometer_bias_mps2", e.accelerometer_bias_mps2);
+  reader.readOptional("eskf_gyroscope_bias_radps", e.gyroscope_bias_radps);
+  reader.readOptional("eskf_accelerometer_bias_walk_mps3_sqrt_hz", e.accelerometer_bias_walk_mps3_sqrt_hz);
+  reader.readOptional("eskf_gyroscope_bias_walk_radps2_sqrt_hz", e.gyroscope_bias_walk_radps2_sqrt_hz);
+  reader.readOptional("eskf_mount_sigma_rad", e.mount_sigma_rad);
+  reader.readOptional("eskf_lever_arm_sigma_m", e.lever_arm_sigma_m);
+  reader.readOptional("eskf_gnss_delay_sigma_s", e.gnss_delay_sigma_s);
+  reader.readOptional("eskf_slip_sigma_mps", e.slip_sigma_mps);
+  reader.readOptional("eskf_slip_sigma_rad", e.slip_sigma_rad);
+  reader.readOptional("eskf_axle_height_m", e.axle_height_m);
+  reader.readOptional("eskf_standing_sigma_mps", e.standing_sigma_mps);
+  reader.readOptional("eskf_recovery_s", e.recovery_s);
 }
 
 template <class Reader>

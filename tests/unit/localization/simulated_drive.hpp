@@ -33,6 +33,7 @@ struct Errors {
   Eigen::Vector3d gyroscope_bias = Eigen::Vector3d::Zero();
   double tilt_rad = 0.0;  ///< slow error of the imu's own roll and pitch
   double heading_white_rad = 0.0, heading_slow_rad = 0.0, heading_slow_time_s = 20.0;
+  bool earth_rotates = false;  ///< the gyroscopes feel the Earth turn, the accelerometers Coriolis
 };
 inline Errors noErrors() {
   Errors e;
@@ -148,15 +149,20 @@ inline Recording record(const std::vector<Truth>& truth, const DriveParams& p, c
   const auto noise3 = [&] { return Eigen::Vector3d(n(random), n(random), n(random)); };
   const double g = normalGravity(kBrno.latitude_deg, kBrno.altitude_m);
   const double root_rate = std::sqrt(p.imu_rate_hz);
+  const double latitude = kBrno.latitude_deg * M_PI / 180.0;
+  const Eigen::Vector3d earth =
+      (e.earth_rotates ? 7.292115e-5 : 0.0) * Eigen::Vector3d(0.0, std::cos(latitude), std::sin(latitude));
   const Eigen::Vector3d tilt(e.tilt_rad * n(random), e.tilt_rad * n(random), 0.0);
   Recording out;
   for (const Truth& t : truth) {
     ImuSample s;
     s.stamp = t.stamp;
     const Eigen::Quaterniond R_imu_map = t.T_map_imu.rotation.conjugate();
-    s.angular_velocity_radps = t.rate_imu + e.gyroscope_bias + e.gyroscope_noise * root_rate * noise3();
-    s.linear_acceleration_mps2 = R_imu_map * (t.acceleration_map + g * Eigen::Vector3d::UnitZ()) +
-                                 e.accelerometer_bias + e.accelerometer_noise * root_rate * noise3();
+    s.angular_velocity_radps =
+        t.rate_imu + R_imu_map * earth + e.gyroscope_bias + e.gyroscope_noise * root_rate * noise3();
+    s.linear_acceleration_mps2 =
+        R_imu_map * (t.acceleration_map + 2.0 * earth.cross(t.velocity_map) + g * Eigen::Vector3d::UnitZ()) +
+        e.accelerometer_bias + e.accelerometer_noise * root_rate * noise3();
     // Roll and pitch with a slow error; a yaw that is magnetic and 63 deg wrong.
     s.orientation = fromRollPitchYaw({0, 0, 1.1}) * t.T_map_imu.rotation * expSo3(tilt);
     out.imu.push_back(s);

@@ -19,6 +19,9 @@ constexpr double kLongestGap_s = 30.0;       // after it nothing is known any mo
 constexpr double kRecoveredSpeed_mps = 3.0;  // standard deviations added in a recovery
 constexpr double kRecoveredYaw_rad = 0.5;
 constexpr int kMostRecoveries = 2;
+constexpr double kMisfitMemory_s = 1.0, kMisfitGain_per_s = 0.5;  // doubt in fixes grows over seconds
+constexpr double kUsualMisfit = 1.5, kMostMisfit = 4.0;           // of mahalanobis_sq / 3, whose mean is 1
+constexpr double kMostFixScale = 1e4;
 
 eskf::Inertial inertial(const ImuSample& s) { return {s.angular_velocity_radps, s.linear_acceleration_mps2}; }
 
@@ -189,8 +192,10 @@ void EskfFilter::use(Stamp stamp, const MeasurementQueue::Fix& fix) {
     fix_used_.add(counters_);
     return;
   }
-  const auto z = eskf::fixMeasurement(state_, rate(), fix.p_map_antenna, fix.R_m2);
-  if (apply<3>("fix", z, params_.gate_mahalanobis_sq)) {
+  const auto z = eskf::fixMeasurement(state_, rate(), fix.p_map_antenna, fix_scale_ * fix.R_m2);
+  const bool accepted = apply<3>("fix", z, params_.gate_mahalanobis_sq);
+  learnFixScale(stamp);
+  if (accepted) {
     fix_used_.add(counters_);
     last_used_fix_ = stamp;
     rejected_ = 0;
@@ -203,6 +208,16 @@ void EskfFilter::use(Stamp stamp, const MeasurementQueue::Fix& fix) {
   if (rejected_ >= params_.max_consecutive_rejections &&
       toSeconds(stamp - rejecting_since_) > params_.eskf.recovery_s)
     recoverPosition(stamp, z.y);
+}
+
+void EskfFilter::learnFixScale(Stamp stamp) {
+  // Fixes that fit worse than they say for a while are worse: multipath, a wrong lever arm, late stamps.
+  const double dt = std::min(toSeconds(stamp - last_scaled_fix_), 1.0);
+  last_scaled_fix_ = stamp;
+  fix_misfit_ +=
+      std::min(1.0, dt / kMisfitMemory_s) * (std::min(last_mahalanobis_sq_ / 3.0, kMostMisfit) - fix_misfit_);
+  const double growth = std::exp(kMisfitGain_per_s * dt * (fix_misfit_ - kUsualMisfit));
+  fix_scale_ = std::clamp(fix_scale_ * growth, 1.0, kMostFixScale);
 }
 
 void EskfFilter::recoverPosition(Stamp stamp, const Eigen::Vector3d& innovation_m) {

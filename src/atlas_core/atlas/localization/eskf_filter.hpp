@@ -47,6 +47,7 @@ class EskfFilter : public PositioningFilter {
   void use(Stamp stamp, const MeasurementQueue::Fix& fix);
   void use(Stamp stamp, const MeasurementQueue::Heading& heading);
   void tryStart();
+  void learnFixScale(Stamp stamp);
   void recoverPosition(Stamp stamp, const Eigen::Vector3d& innovation_m);
 
   // eskf_constraints.cpp: what standing, the wheels and the IMU's own orientation say, once a block
@@ -77,8 +78,10 @@ class EskfFilter : public PositioningFilter {
   double period_s_ = 0.0;  ///< usual time between two samples
   double last_mahalanobis_sq_ = 0.0;
 
-  Stamp last_fix_ = 0, last_used_fix_ = 0, last_used_heading_ = 0, rejecting_since_ = 0;
+  Stamp last_fix_ = kBeginOfTime, last_used_fix_ = 0, last_used_heading_ = 0, rejecting_since_ = 0;
   int rejected_ = 0, recoveries_ = 0;  ///< in a row
+  Stamp last_scaled_fix_ = 0;
+  double fix_misfit_ = 1.0, fix_scale_ = 1.0;  ///< how much worse than they say the fixes are (variance)
   int still_blocks_ = 0;
   double still_force_spread_ = 0.0, still_gyro_spread_ = 0.0;  ///< seen while surely standing
   std::optional<ImuMonitor::Block> block_before_;

@@ -2,6 +2,9 @@
 #include "atlas/localization/localization_stage.hpp"
 
 #include <cmath>
+#include <stdexcept>
+
+#include "atlas/localization/eskf_history.hpp"
 
 namespace atlas {
 namespace {
@@ -68,6 +71,7 @@ void LocalizationStage::use(const GnssFix& fix) {
     map_.emplace(g);
     if (on_anchor) on_anchor({fix.stamp, g});
   }
+  if (params_.smoothed) return;
   if (!filter_) {
     const Outcome<Eigen::Vector3d> lever_arm_imu = leverArm(fix);
     if (!lever_arm_imu) {
@@ -76,6 +80,8 @@ void LocalizationStage::use(const GnssFix& fix) {
     }
     filter_ =
         makePositioningFilter(params_.filter, params_.positioning, *lever_arm_imu, map_->anchor(), counters_);
+    if (history_ != nullptr) filter_->record(history_);
+    if (on_innovation) filter_->on_innovation = on_innovation;
     if (last_imu_) filter_->propagate(*last_imu_);
   }
   filter_->update(fix.stamp, map_->toMap(g), covarianceOf(fix));
@@ -83,6 +89,7 @@ void LocalizationStage::use(const GnssFix& fix) {
 
 void LocalizationStage::use(const GnssHeading& heading) {
   counters_.add("heading");
+  if (params_.smoothed) return;
   if (!std::isfinite(heading.yaw_rad)) {
     counters_.skip("heading", Reason::kNotFinite);
     return;
@@ -107,6 +114,10 @@ void LocalizationStage::use(const GnssHeading& heading) {
 
 void LocalizationStage::use(const ImuSample& sample) {
   counters_.add("imu");
+  if (params_.smoothed) {
+    answerSmoothed(sample.stamp);
+    return;
+  }
   if (!sample.angular_velocity_radps.allFinite() || !sample.linear_acceleration_mps2.allFinite()) {
     counters_.skip("imu", Reason::kNotFinite);
     return;
@@ -131,8 +142,34 @@ void LocalizationStage::use(const ImuSample& sample) {
     counters_.skip("odometry", Reason::kNoPoseYet);
     return;
   }
+  emit(*odometry);
+}
+
+void LocalizationStage::emit(const Odometry& odometry) {
   counters_.add("odometry");
-  if (on_odometry) on_odometry(*odometry);
+  if (on_odometry) on_odometry(odometry);
+}
+
+void LocalizationStage::answerSmoothed(Stamp stamp) {
+  const eskf::History& run = *params_.smoothed;
+  while (smoothed_next_ < run.size() && run.stamp(smoothed_next_) < stamp) ++smoothed_next_;
+  if (smoothed_next_ == run.size() || run.stamp(smoothed_next_) != stamp) {
+    counters_.skip("odometry", Reason::kNoPoseYet);
+    return;
+  }
+  emit(run.odometry(smoothed_next_++));
+}
+
+void LocalizationStage::record(eskf::History* history) {
+  Counters counters;
+  if (!makePositioningFilter(params_.filter, params_.positioning, Eigen::Vector3d::Zero(), {}, counters)
+           ->record(history))
+    throw std::invalid_argument("localization: filter " + params_.filter + " has no smoother");
+  history_ = history;
+}
+
+std::optional<ImuBias> LocalizationStage::imuBias() const {
+  return filter_ ? filter_->imuBias() : std::nullopt;
 }
 
 void LocalizationStage::onEnd() {

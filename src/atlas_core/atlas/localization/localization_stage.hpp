@@ -21,6 +21,8 @@ struct LocalizationParams {
   /// imu).
   std::string gnss_antenna_frame = "gnss_rear";
   PositioningParams positioning;
+  /// A smoothed run over the same data: the stage answers from it instead of filtering (second pass offline).
+  std::shared_ptr<const eskf::History> smoothed;
 };
 /// Throws std::invalid_argument that names the field and its value.
 void validate(const LocalizationParams& params);
@@ -37,9 +39,16 @@ class LocalizationStage : public Stage {
   void push(const GnssHeading& heading);
   void push(const ImuSample& sample);
 
+  /// Records the run for smoothing; call before the first event. Throws std::invalid_argument for a filter
+  /// that has no smoother. The history must outlive the stage.
+  void record(eskf::History* history);
+  /// Of the present time; none before there is an estimate.
+  [[nodiscard]] std::optional<ImuBias> imuBias() const;
+
   std::function<void(const Odometry&)>
       on_odometry;                               ///< one per IMU sample once position and heading are known
   std::function<void(const Anchor&)> on_anchor;  ///< once, with the first fix
+  std::function<void(const InnovationRecord&)> on_innovation;  ///< one per measurement, used or not
 
  protected:
   void onEnd() override;
@@ -55,7 +64,12 @@ class LocalizationStage : public Stage {
   Rig rig_;
   std::optional<LocalEnu> map_;        ///< set with the first fix
   std::optional<ImuSample> last_imu_;  ///< before there is a filter: the first fix lies between two samples
+  void emit(const Odometry& odometry);
+  void answerSmoothed(Stamp stamp);
+
   std::unique_ptr<PositioningFilter> filter_;
+  eskf::History* history_ = nullptr;
+  std::size_t smoothed_next_ = 0;  ///< first smoothed sample that is not older than the present one
 };
 
 }  // namespace atlas

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""The real recordings as plain lists for positioning_table.py: IMU rows, GNSS rows, reference positions.
+
+A drive is a dict: imu = [(stamp_ns, ax, ay, az, gx, gy, gz)], gnss = [(stamp_ns, lat, lon, alt, sd_e, sd_n, sd_u)],
+reference = [(stamp_ns, lat, lon, alt)]. Axes forward-left-up, SI units."""
+import ast
+import calendar
+import glob
+import math
+import re
+import struct
+import time
+from pathlib import Path
+
+G = 9.80665
+
+
+def ecef(lat_deg, lon_deg, alt):
+    """WGS84."""
+    a, e2 = 6378137.0, 6.69437999014e-3
+    lat, lon = math.radians(lat_deg), math.radians(lon_deg)
+    n = a / math.sqrt(1.0 - e2 * math.sin(lat) ** 2)
+    return ((n + alt) * math.cos(lat) * math.cos(lon), (n + alt) * math.cos(lat) * math.sin(lon),
+            (n * (1.0 - e2) + alt) * math.sin(lat))
+
+
+def geodetic(x, y, z):
+    a, e2 = 6378137.0, 6.69437999014e-3
+    lon, p = math.atan2(y, x), math.hypot(x, y)
+    lat, alt = math.atan2(z, p * (1.0 - e2)), 0.0
+    for _ in range(8):
+        n = a / math.sqrt(1.0 - e2 * math.sin(lat) ** 2)
+        alt = p / math.cos(lat) - n
+        lat = math.atan2(z, p * (1.0 - e2 * n / (n + alt)))
+    return math.degrees(lat), math.degrees(lon), alt
+
+
+class Enu:
+    def __init__(self, lat, lon, alt):
+        self.origin = ecef(lat, lon, alt)
+        self.lat, self.lon = math.radians(lat), math.radians(lon)
+
+    def of(self, lat, lon, alt):
+        d = [b - a for a, b in zip(self.origin, ecef(lat, lon, alt))]
+        sl, cl, so, co = math.sin(self.lat), math.cos(self.lat), math.sin(self.lon), math.cos(self.lon)
+        return (-so * d[0] + co * d[1], -sl * co * d[0] - sl * so * d[1] + cl * d[2],
+                cl * co * d[0] + cl * so * d[1] + sl * d[2])
+
+    def inverse(self, e, n, u):
+        sl, cl, so, co = math.sin(self.lat), math.cos(self.lat), math.sin(self.lon), math.cos(self.lon)
+        x, y, z = (-so * e - sl * co * n + cl * co * u, co * e - sl * so * n + cl * so * u, cl * n + sl * u)
+        return geodetic(*(a + b for a, b in zip(self.origin, (x, y, z))))
+
+
+def npy(path):
+    """Rows of a little-endian float64 array of one or two dimensions."""
+    data = Path(path).read_bytes()
+    size = struct.unpack("<H", data[8:10])[0]
+    head = ast.literal_eval(data[10:10 + size].decode())
+    shape, kind = head["shape"], {"<f8": "d", "<f4": "f", "<i8": "q"}[head["descr"]]
+    count = math.prod(shape)
+    values = struct.unpack("<%d%s" % (count, kind), data[10 + size:10 + size + count * struct.calcsize(kind)])
+    if len(shape) == 1:
+        return [(v,) for v in values]
+    if head["fortran_order"]:
+        return [tuple(values[j * shape[0] + i] for j in range(shape[1])) for i in range(shape[0])]
+    return [values[i * shape[1]:(i + 1) * shape[1]] for i in range(shape[0])]
+
+
+def walk(root):
+    folder = root / "gnss_imu_rtk_walk/walk_0827"
+    gnss, reference = [], []
+    for line in (folder / "gnss_1730_sf.pos").read_text().splitlines():
+        f = line.split()
+        if line.startswith("%") or len(f) < 10:
+            continue
+        day, clock = f[0].split("/"), f[1].split(":")
+        whole = calendar.timegm((int(day[0]), int(day[1]), int(day[2]), int(clock[0]), int(clock[1]), 0))
+        stamp = whole * 10**9 + round(float(clock[2]) * 1e3) * 10**6
+        lat, lon, alt = (float(v) for v in f[2:5])
+        gnss.append((stamp, lat, lon, alt, float(f[8]), float(f[7]), float(f[9])))
+        if float(f[5]) == 1.0:
+            reference.append((stamp, lat, lon, alt))
+    imu = []
+    for line in (folder / "imu_1730_gpst.csv").read_text().splitlines()[1:]:
+        v = [float(x) for x in line.split(",")]
+        # Held with y backwards and x to the left: the only quarter turn in which the walker moves forward.
+        v[1:7] = -v[2], v[1], v[3], -v[5], v[4], v[6]
+        imu.append((round(v[0] * 1e4) * 10**5, *(G * a for a in v[1:4]), *(math.radians(w) for w in v[4:7])))
+    return {"imu": imu, "gnss": gnss, "reference": reference}
+
+
+def comma(root):
+    folder = glob.glob(str(root / "comma2k19_seg/Example_1/*/40"))[0]
+    log = folder + "/processed_log/"
+    force, turn = npy(log + "IMU/accelerometer/value"), npy(log + "IMU/gyro/value")
+    t_force, t_turn = npy(log + "IMU/accelerometer/t"), npy(log + "IMU/gyro/t")
+    imu, j = [], 0
+    for (t,), f in zip(t_force, force):
+        while j + 1 < len(t_turn) and abs(t_turn[j + 1][0] - t) <= abs(t_turn[j][0] - t):
+            j += 1
+        # The device's x points forward, y right, z down: reversed y and z are left and up.
+        imu.append((round(t * 1e9), f[0], -f[1], -f[2], turn[j][0], -turn[j][1], -turn[j][2]))
+    fixes = zip(npy(log + "GNSS/live_gnss_ublox/t"), npy(log + "GNSS/live_gnss_ublox/value"))
+    gnss = [(round(t[0] * 1e9), v[0], v[1], v[4], 1.5, 1.5, 3.0) for t, v in fixes]
+    reference = [(round(t[0] * 1e9), *geodetic(*p)) for t, p in
+                 zip(npy(folder + "/global_pose/frame_times"), npy(folder + "/global_pose/frame_positions"))]
+    return {"imu": imu, "gnss": gnss, "reference": reference}
+
+
+def kitti(folder, random, sigma_m=2.0, rate_hz=1.0):
+    """The oxts stream degraded on purpose: fixes of `rate_hz` with white noise."""
+    stamps = []
+    for line in next(Path(folder).rglob("timestamps.txt")).read_text().splitlines():
+        m = re.match(r"(\S+ \S+)\.(\d+)", line)
+        if m:
+            whole = calendar.timegm(time.strptime(m.group(1), "%Y-%m-%d %H:%M:%S"))
+            stamps.append(whole * 10**9 + int(m.group(2).ljust(9, "0")[:9]))
+    files = sorted(p for p in Path(folder).rglob("*.txt") if p.stem.isdigit())
+    imu, gnss, reference, enu, due = [], [], [], None, None
+    for stamp, file in zip(stamps, files):
+        v = [float(x) for x in file.read_text().split()]
+        if imu and stamp <= imu[-1][0]:
+            continue
+        imu.append((stamp, *v[11:14], *v[17:20]))
+        reference.append((stamp, *v[0:3]))
+        enu = enu or Enu(*v[0:3])
+        due = stamp if due is None else due
+        if stamp >= due - 10**7:
+            p = [a + random.gauss(0.0, sigma_m) for a in enu.of(*v[0:3])]
+            gnss.append((stamp, *enu.inverse(*p), sigma_m, sigma_m, sigma_m))
+            due += round(1e9 / rate_hz)
+    return {"imu": imu, "gnss": gnss, "reference": reference}
+
+
+def husky(root):
+    """Husky robot, consumer GNSS; the IMU is mounted with y up, so forward-left-up is x, -z, y."""
+    import rosbag
+    imu, gnss = [], []
+    with rosbag.Bag(str(root / "ros1_bags/robot_localization_test1.bag")) as bag:
+        for topic, message, _ in bag.read_messages():
+            kind = getattr(message, "_type", "")
+            if kind == "sensor_msgs/Imu":
+                a, w = message.linear_acceleration, message.angular_velocity
+                imu.append((message.header.stamp.to_nsec(), a.x, -a.z, a.y, w.x, -w.z, w.y))
+            elif kind == "sensor_msgs/NavSatFix" and message.status.status >= 0:
+                c = message.position_covariance
+                gnss.append((message.header.stamp.to_nsec(), message.latitude, message.longitude, message.altitude,
+                             math.sqrt(c[0]), math.sqrt(c[4]), math.sqrt(c[8])))
+    return {"imu": sorted(set(imu)), "gnss": sorted(set(gnss)), "reference": [(g[0], *g[1:4]) for g in sorted(set(gnss))]}
