@@ -19,6 +19,24 @@ atlas::RecordOptions::Images imagesFrom(const std::string& text) {
   throw std::invalid_argument("images must be h265, jpeg or raw, got '" + text + "'");
 }
 
+atlas::RecordOptions::ScanStamp scanStampFrom(const std::string& text) {
+  if (text == "end") return atlas::RecordOptions::ScanStamp::kEnd;
+  if (text == "start") return atlas::RecordOptions::ScanStamp::kStart;
+  throw std::invalid_argument("scan_stamp must be end or start, got '" + text + "'");
+}
+
+/// A bag has its stamps already.
+void rejectLatencies(const InputOptions& options) {
+  const std::pair<const char*, double> latencies[] = {{"imu_latency_s", options.imu_latency_s},
+                                                      {"gnss_latency_s", options.gnss_latency_s},
+                                                      {"lidar_latency_s", options.lidar_latency_s}};
+  for (const auto& [name, value] : latencies) {
+    if (value == 0.0) continue;
+    throw std::invalid_argument(std::string(name) + " is for records, a bag has its stamps already; got " +
+                                std::to_string(value));
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<atlas::RecordReader> openInput(const InputOptions& options) {
@@ -27,6 +45,7 @@ std::unique_ptr<atlas::RecordReader> openInput(const InputOptions& options) {
                                 "' and record '" + options.record + "'");
   }
   if (!options.bag.empty()) {
+    rejectLatencies(options);
     atlas_ros::BagOptions bag;
     bag.start_s = options.start_s;
     bag.duration_s = options.duration_s;
@@ -40,6 +59,10 @@ std::unique_ptr<atlas::RecordReader> openInput(const InputOptions& options) {
   record.duration_s = options.duration_s;
   record.topics = options.topics;
   record.images = imagesFrom(options.images);
+  record.imu_latency_s = options.imu_latency_s;
+  record.gnss_latency_s = options.gnss_latency_s;
+  record.lidar_latency_s = options.lidar_latency_s;
+  record.scan_stamp = scanStampFrom(options.scan_stamp);
   return atlas::openRecord(options.record, record);
 }
 

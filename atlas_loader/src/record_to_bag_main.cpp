@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "input_arguments.hpp"
 #include "open_input.hpp"
 #include "progress_bar.hpp"
 #include "record_bag.hpp"
@@ -43,9 +44,7 @@ int main(int argc, char** argv) {
   app.add_option("-o,--output", output, "bag to write")->required();
   app.add_option("--images", options.images, "h265 (packets as recorded), jpeg or raw")
       ->check(CLI::IsMember({"h265", "jpeg", "raw"}));
-  app.add_option("--calibration", options.calibration, "calibration folder, when the record carries none");
-  app.add_option("--start", options.start_s, "skip this many seconds");
-  app.add_option("--duration", options.duration_s, "convert this many seconds");
+  atlas_loader::addRecordArguments(app, options);
   app.add_option("--topics", options.topics, "only these topics")->delimiter(',');
   app.add_flag("--force", force, "overwrite the bag");
   CLI11_PARSE(app, argc, argv);

@@ -155,8 +155,7 @@ class Assembly {
                [rows](RowFields& f) { return parseScalar(f, rows, "pressure"); });
     addSamples("imu/temp.txt", "imu/temperature", StreamKind::kTemperature, latency,
                [rows](RowFields& f) { return parseScalar(f, rows, "temperature"); });
-    addSamples("imu/time.txt", "imu/time", StreamKind::kTimeReference, latency,
-               [rows](RowFields& f) { return parseTime(f, rows, "imu"); });
+    addTimes("imu", rows);
     addSamples("imu/gnss.txt", "imu/gnss/fix", StreamKind::kGnssFix, latency,
                [rows](RowFields& f) { return parseFix(f, rows, 4); });
     if (options_.topics.empty() && fs::exists(record_ / "imu/d_quat.txt", error)) {
@@ -187,8 +186,35 @@ class Assembly {
           log->note("gnss/pose.txt: " + std::to_string(*without_heading) +
                     " rows with azimuth 0: no heading (their position is used)");
         });
-    addSamples("gnss/time.txt", "gnss/time", StreamKind::kTimeReference, rows.latency,
-               [rows](RowFields& f) { return parseTime(f, rows, "gnss"); });
+    addTimes("gnss", rows);
+  }
+
+  /// <sensor>/time.txt; how long after the sensor's own time its rows are stamped goes to the notes.
+  void addTimes(const std::string& sensor, const BudRowOptions& rows) {
+    auto delays = std::make_shared<std::vector<Duration>>();
+    addRows(
+        sensor + "/time.txt", {{sensor + "/time", StreamKind::kTimeReference}}, rows.latency,
+        [sensor, rows, delays](const Streams& s) {
+          return [sensor, rows, delays, s](RowFields& fields, std::vector<Event>& events) {
+            const TimeReference time = parseTime(fields, rows, sensor);
+            constexpr std::size_t kLookedAt = 4096;
+            if (fields.ok() && delays->size() < kLookedAt) {
+              delays->push_back(time.stamp + rows.latency - time.sensor_time);
+            }
+            if (s[0]) events.push_back({time.stamp, *s[0], time});
+            return time.stamp;
+          };
+        },
+        [sensor, delays, log = parts_.log] {
+          if (delays->empty()) return;
+          const auto middle = delays->begin() + static_cast<std::ptrdiff_t>(delays->size() / 2);
+          std::nth_element(delays->begin(), middle, delays->end());
+          char text[120];
+          std::snprintf(text, sizeof(text),
+                        "/time.txt: system stamp minus the sensor's UTC %.3f ms (median of %zu)",
+                        toSeconds(*middle) * 1e3, delays->size());
+          log->note(sensor + text);
+        });
   }
 
   /// What lies in the record and is not read, and what was asked for and is not there.
