@@ -68,7 +68,7 @@ TEST_F(RealData, BudSnippetSaysWhatIsKnownAboutIt) {
   EXPECT_TRUE(d.notesSay("gnss/pose.txt: 23 rows with azimuth 0"));
   EXPECT_TRUE(d.notesSay("imu/time.txt: system stamp minus the sensor's UTC 4.134 ms (median of 499)"))
       << d.allNotes();
-  EXPECT_TRUE(d.notesSay("gnss/time.txt: system stamp minus the sensor's UTC 8.2"));
+  EXPECT_TRUE(d.notesSay("gnss/time.txt: system stamp minus the sensor's UTC 8.197 ms (median of 500)"));
   EXPECT_TRUE(d.notesSay("yolo/camera_left_front.txt: layout of 8 columns, boxes by their top-left corner"));
   EXPECT_EQ(d.of("gnss/heading").size(), 477U);
   std::size_t boxes = 0;
