@@ -49,10 +49,11 @@ void StageLink::start(atlas::StageFactory factory) {
       handle_.subscribe<std_msgs::Empty>("hello_request", kKeepAll,
                                          boost::function<void(const std_msgs::EmptyConstPtr&)>(
                                              [this](const std_msgs::EmptyConstPtr&) { sayHello(); })));
+  ready_ = true;  // the source asks until it has heard every stage
 }
 
 void StageLink::sayHello() {
-  if (!hello_) return;
+  if (!ready_) return;  // called by a connection while start() still runs in the loading thread
   atlas_msgs::StageHello msg;
   msg.stage = name_;
   msg.process = ros::this_node::getName();

@@ -11,6 +11,7 @@
 #include <ros/ros.h>
 #include <std_msgs/Empty.h>
 
+#include <atomic>
 #include <boost/make_shared.hpp>
 #include <deque>
 #include <functional>
@@ -120,7 +121,8 @@ class StageLink {
   ros::Publisher hello_, progress_;
   std::set<std::string> links_;
   std::uint32_t epoch_ = 0;
-  bool running_ = false;  ///< between GraphStart and the end of the epoch
+  std::atomic<bool> ready_{false};  ///< every subscription is made; no hello before: a run must not begin yet
+  bool running_ = false;            ///< between GraphStart and the end of the epoch
   bool failed_ = false;
   std::string error_;
   diagnostic_updater::Updater
