@@ -49,7 +49,7 @@ BatchedSweep makeSweep(std::size_t count) {
 
 void depthImage(benchmark::State& state) {
   const std::size_t sweeps = static_cast<std::size_t>(state.range(0));
-  const BoundedSweepPtr sweep = withBounds(std::make_shared<BatchedSweep>(makeSweep(70000)));
+  const CompactSweepPtr sweep = compacted(makeSweep(70000));
   IntrinsicsCache cache(0.5, 100.0);
   const Intrinsics& intrinsics = cache.of(thermalInfo()).value();
   Pose T_camera_map;  // optical frame of a camera that looks along x

@@ -18,8 +18,8 @@ TEST(CameraWindow, holdsTheSweepsOfItsLengthBeforeAnImage) {
   EXPECT_EQ(window.size(), 5U) << "(100 ms, 600 ms]";
   const auto seen = window.since(kStart + 750 * kMillisecond);
   ASSERT_EQ(seen.size(), 4U) << "(250 ms, ...]";
-  EXPECT_EQ(seen.front()->batched->stamp, kStart + 300 * kMillisecond);
-  EXPECT_EQ(seen.front()->bounds.size(), 1U);
+  EXPECT_EQ(seen.front()->stamp, kStart + 300 * kMillisecond);
+  EXPECT_EQ(seen.front()->batches.size(), 1U);
   EXPECT_TRUE(window.since(kStart + 2 * kSecond).empty());
 }
 

@@ -5,10 +5,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
-#include <vector>
-
-#include "atlas/sensor/products.hpp"
 
 namespace atlas {
 
@@ -19,7 +15,9 @@ struct BatchBounds {
   float min_range_m = 0, max_range_m = -1;                   ///< max < min: no finite point
 
   [[nodiscard]] bool empty() const { return max_range_m < min_range_m; }
-  void add(const LidarPoint& point);
+  /// A point at the lidar itself has no direction: it is no measurement and not taken. False then, and when
+  /// it is not finite.
+  bool add(const Eigen::Vector3f& p_lidar);
 
   /// Largest value of normal . p + offset over all p = range * direction inside the bounds (not empty).
   [[nodiscard]] float largest(const Eigen::Vector3f& normal, float offset) const {
@@ -28,14 +26,5 @@ struct BatchBounds {
     return offset + along * (along > 0.0F ? max_range_m : min_range_m);
   }
 };
-
-/// A sweep with the bounds of each of its batches.
-struct BoundedSweep {
-  BatchedSweepPtr batched;
-  std::vector<BatchBounds> bounds;  ///< by batch
-};
-using BoundedSweepPtr = std::shared_ptr<const BoundedSweep>;
-
-[[nodiscard]] BoundedSweepPtr withBounds(const BatchedSweepPtr& batched);
 
 }  // namespace atlas

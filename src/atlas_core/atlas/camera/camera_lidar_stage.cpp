@@ -165,7 +165,7 @@ std::vector<Frustum> CameraLidarStage::frustumsOf(const Waiting& waiting, const 
   if (candidates.empty()) return {};
   const Pose T_camera_map = T_map_camera.inverse();
   const Detection2d all = around(candidates);
-  for (const BoundedSweepPtr& sweep : waiting.sweeps) {
+  for (const CompactSweepPtr& sweep : waiting.sweeps) {
     intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
       if (!holds(all, point)) return;
       for (Candidate& c : candidates) {

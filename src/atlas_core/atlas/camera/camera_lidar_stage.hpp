@@ -64,7 +64,7 @@ class CameraLidarStage : public Stage {
     Detections detections;
     std::optional<CameraInfo> info;       ///< newest at the image's turn
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
-    std::vector<BoundedSweepPtr> sweeps;  ///< the window at the image's turn
+    std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn
   };
   void take(std::size_t camera, const Detections& detections);
   void answerReady();

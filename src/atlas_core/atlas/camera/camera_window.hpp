@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "atlas/base/time.hpp"
-#include "atlas/camera/batch_bounds.hpp"
+#include "atlas/camera/compact_sweep.hpp"
 
 namespace atlas {
 
@@ -17,15 +17,14 @@ class CameraWindow {
   /// Sweeps come in stamp order; those without pose are not kept, those that no image at or after this stamp
   /// can see are dropped.
   void push(const BatchedSweepPtr& batched) {
-    if (!batched->batches.empty()) sweeps_.push_back(withBounds(batched));
-    while (!sweeps_.empty() && sweeps_.front()->batched->stamp <= batched->stamp - length_)
-      sweeps_.pop_front();
+    if (!batched->batches.empty()) sweeps_.push_back(compacted(*batched));
+    while (!sweeps_.empty() && sweeps_.front()->stamp <= batched->stamp - length_) sweeps_.pop_front();
   }
   /// Those with a stamp in (stamp - length, ...], oldest first.
-  [[nodiscard]] std::vector<BoundedSweepPtr> since(Stamp stamp) const {
-    std::vector<BoundedSweepPtr> result;
-    for (const BoundedSweepPtr& sweep : sweeps_) {
-      if (sweep->batched->stamp > stamp - length_) result.push_back(sweep);
+  [[nodiscard]] std::vector<CompactSweepPtr> since(Stamp stamp) const {
+    std::vector<CompactSweepPtr> result;
+    for (const CompactSweepPtr& sweep : sweeps_) {
+      if (sweep->stamp > stamp - length_) result.push_back(sweep);
     }
     return result;
   }
@@ -33,7 +32,7 @@ class CameraWindow {
 
  private:
   Duration length_;
-  std::deque<BoundedSweepPtr> sweeps_;
+  std::deque<CompactSweepPtr> sweeps_;
 };
 
 }  // namespace atlas

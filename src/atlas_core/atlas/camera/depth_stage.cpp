@@ -121,7 +121,7 @@ Outcome<cv::Mat> DepthStage::render(const Waiting& waiting, const Intrinsics& in
   const Pose T_camera_map = (*T_map_imu * *waiting.T_imu_camera).inverse();
   DepthBuffer buffer(intrinsics.model.width(), intrinsics.model.height());
   std::uint64_t seen = 0;
-  for (const BoundedSweepPtr& sweep : waiting.sweeps) {
+  for (const CompactSweepPtr& sweep : waiting.sweeps) {
     intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
       buffer.add(point);
       ++seen;

@@ -58,7 +58,7 @@ class DepthStage : public Stage {
     std::uint32_t image_index;
     CameraInfo info;
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
-    std::vector<BoundedSweepPtr> sweeps;  ///< the window at the image's turn
+    std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn
   };
   void take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index);
   void answerReady();

@@ -4,12 +4,13 @@
 // range.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
-#include <vector>
 
 #include "atlas/base/geometry.hpp"
-#include "atlas/camera/batch_bounds.hpp"
 #include "atlas/camera/camera_model.hpp"
+#include "atlas/camera/compact_sweep.hpp"
 #include "atlas/sensor/products.hpp"
 
 namespace atlas {
@@ -30,52 +31,61 @@ class Projector {
   [[nodiscard]] bool project(const Eigen::Matrix<float, 3, 4>& T_camera_lidar, const LidarPoint& point,
                              ProjectedPoint& seen) const {
     const auto& m = T_camera_lidar;
-    const float z = m(2, 0) * point.x + m(2, 1) * point.y + m(2, 2) * point.z + m(2, 3);
-    if (!(z >= min_depth_m_ && z <= max_depth_m_)) return false;  // NaN ends here
-    const float x_z = m(0, 0) * point.x + m(0, 1) * point.y + m(0, 2) * point.z + m(0, 3);
-    if (x_z < min_x_ * z || x_z > max_x_ * z) return false;
-    const float y_z = m(1, 0) * point.x + m(1, 1) * point.y + m(1, 2) * point.z + m(1, 3);
-    if (y_z < min_y_ * z || y_z > max_y_ * z) return false;
-    float x = x_z / z;
-    float y = y_z / z;
-    if (x * x + y * y > max_tangent_sq_) return false;
-    distortion_.apply(x, y);
-    seen = {fx_ * x + cx_, fy_ * y + cy_, z};
-    return seen.u >= -0.5F && seen.v >= -0.5F && seen.u < right_ && seen.v < bottom_;
+    return see(m(0, 0) * point.x + m(0, 1) * point.y + m(0, 2) * point.z + m(0, 3),
+               m(1, 0) * point.x + m(1, 1) * point.y + m(1, 2) * point.z + m(1, 3),
+               m(2, 0) * point.x + m(2, 1) * point.y + m(2, 2) * point.z + m(2, 3), seen);
   }
 
   /// False when no point inside the bounds can be seen.
   [[nodiscard]] bool maySee(const Eigen::Matrix<float, 3, 4>& T_camera_lidar,
                             const BatchBounds& bounds) const;
 
-  /// Calls visit(const ProjectedPoint&) for every point of the sweep that is seen, in the sweep's order.
+  /// Calls visit(const ProjectedPoint&) for every point of the sweep that is seen, batch by batch.
   template <class Visit>
-  void projectSweep(const BoundedSweep& bounded, const Pose& T_camera_map, Visit&& visit) const {
-    const BatchedSweep& sweep = *bounded.batched;
-    std::vector<Eigen::Matrix<float, 3, 4>> T_camera_lidar;  // of each batch
-    std::vector<bool> in_view;
-    for (std::size_t b = 0; b < sweep.batches.size(); ++b) {
-      T_camera_lidar.push_back((T_camera_map * sweep.batches[b].T_map_lidar).matrix34f());
-      in_view.push_back(maySee(T_camera_lidar[b], bounded.bounds[b]));
-    }
-    const LidarPoint* points = sweep.sweep->points.data();
-    ProjectedPoint seen;
-    if (sweep.batch_of_point.empty()) {
-      for (std::size_t b = 0; b < sweep.batches.size(); ++b) {
-        const std::size_t end = in_view[b] ? sweep.batches[b].first + sweep.batches[b].count : 0;
-        for (std::size_t i = sweep.batches[b].first; i < end; ++i) {
-          if (project(T_camera_lidar[b], points[i], seen)) visit(seen);
-        }
+  void projectSweep(const CompactSweep& sweep, const Pose& T_camera_map, Visit&& visit) const {
+    for (const CompactSweep::Batch& batch : sweep.batches) {
+      const Eigen::Matrix<float, 3, 4> T_camera_lidar = (T_camera_map * batch.T_map_lidar).matrix34f();
+      if (!maySee(T_camera_lidar, batch.bounds)) continue;
+      for (std::size_t first = batch.first; first < batch.end; first += kBlock) {
+        projectBlock(sweep, first, std::min(kBlock, batch.end - first), T_camera_lidar, visit);
       }
-      return;
-    }
-    for (std::size_t i = 0; i < sweep.batch_of_point.size(); ++i) {
-      const std::size_t b = sweep.batch_of_point[i];
-      if (in_view[b] && project(T_camera_lidar[b], points[i], seen)) visit(seen);
     }
   }
 
  private:
+  static constexpr std::size_t kBlock = 128;  ///< points that are transformed together
+
+  /// From p_camera to its image.
+  [[nodiscard]] bool see(float x_camera, float y_camera, float z_camera, ProjectedPoint& seen) const {
+    if (!(z_camera >= min_depth_m_ && z_camera <= max_depth_m_)) return false;  // NaN ends here
+    if (x_camera < min_x_ * z_camera || x_camera > max_x_ * z_camera) return false;
+    if (y_camera < min_y_ * z_camera || y_camera > max_y_ * z_camera) return false;
+    float x = x_camera / z_camera;
+    float y = y_camera / z_camera;
+    if (x * x + y * y > max_tangent_sq_) return false;
+    distortion_.apply(x, y);
+    seen = {fx_ * x + cx_, fy_ * y + cy_, z_camera};
+    return seen.u >= -0.5F && seen.v >= -0.5F && seen.u < right_ && seen.v < bottom_;
+  }
+  /// The transform is a loop of its own without branches: the compiler takes several points at a time.
+  template <class Visit>
+  void projectBlock(const CompactSweep& sweep, std::size_t first, std::size_t count,
+                    const Eigen::Matrix<float, 3, 4>& m, Visit&& visit) const {
+    const float *x = &sweep.x[first], *y = &sweep.y[first], *z = &sweep.z[first];
+    std::array<float, kBlock> x_camera, y_camera, z_camera;
+    const float m00 = m(0, 0), m01 = m(0, 1), m02 = m(0, 2), m03 = m(0, 3);
+    const float m10 = m(1, 0), m11 = m(1, 1), m12 = m(1, 2), m13 = m(1, 3);
+    const float m20 = m(2, 0), m21 = m(2, 1), m22 = m(2, 2), m23 = m(2, 3);
+    for (std::size_t i = 0; i < count; ++i) {
+      x_camera[i] = m00 * x[i] + m01 * y[i] + m02 * z[i] + m03;
+      y_camera[i] = m10 * x[i] + m11 * y[i] + m12 * z[i] + m13;
+      z_camera[i] = m20 * x[i] + m21 * y[i] + m22 * z[i] + m23;
+    }
+    ProjectedPoint seen;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (see(x_camera[i], y_camera[i], z_camera[i], seen)) visit(seen);
+    }
+  }
   void boundField(const CameraModel& model);
 
   float fx_, fy_, cx_, cy_;

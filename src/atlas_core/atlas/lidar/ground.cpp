@@ -58,7 +58,7 @@ GroundGrid::GroundGrid(const std::vector<LidarPoint>& points, const Eigen::Vecto
   side_ = static_cast<int>(std::ceil(2.0 * params.radius_m / edge)) + 1;
   vehicle_x_ = (center_map.x() - origin_x_) / edge;
   vehicle_y_ = (center_map.y() - origin_y_) / edge;
-  cells_.assign(static_cast<std::size_t>(side_ * side_), Cell{});
+  cells_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), Cell{});
   const PointsOfCells in_cells = sortIntoCells(points);
   propose(points, in_cells);
   grow();

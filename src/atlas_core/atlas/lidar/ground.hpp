@@ -49,10 +49,11 @@ class GroundGrid {
   void fill();
   void center(const std::vector<LidarPoint>& points, const PointsOfCells& in_cells);
   [[nodiscard]] bool cellOf(double x, double y, int& ix, int& iy) const;
-  [[nodiscard]] const Cell& cell(int ix, int iy) const {
-    return cells_[static_cast<std::size_t>(iy * side_ + ix)];
+  [[nodiscard]] std::size_t indexOf(int ix, int iy) const {
+    return static_cast<std::size_t>(iy) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(ix);
   }
-  [[nodiscard]] Cell& cell(int ix, int iy) { return cells_[static_cast<std::size_t>(iy * side_ + ix)]; }
+  [[nodiscard]] const Cell& cell(int ix, int iy) const { return cells_[indexOf(ix, iy)]; }
+  [[nodiscard]] Cell& cell(int ix, int iy) { return cells_[indexOf(ix, iy)]; }
   /// Calls use(cell, distance in m) for the visited or all cells within `reach` cells of (ix, iy), without
   /// itself.
   template <class Use>
