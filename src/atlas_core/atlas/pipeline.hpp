@@ -50,6 +50,7 @@ template <class T, class Bus>
 std::function<void(std::size_t, const T&)> outputs(Bus& bus, const std::vector<std::string>& names,
                                                    const std::string& suffix) {
   std::vector<std::function<void(const T&)>> emits;
+  emits.reserve(names.size());
   for (const std::string& name : names) emits.push_back(bus.template output<T>(name + suffix));
   return [emits](std::size_t i, const T& value) { emits.at(i)(value); };
 }

@@ -17,8 +17,8 @@ class DepthBuffer {
   /// `point` lies in the image (Projector::project).
   void add(const ProjectedPoint& point) {
     // u, v >= -0.5, so truncation rounds to the nearest
-    const int column = static_cast<int>(point.u + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
-    const int row = static_cast<int>(point.v + 0.5F);     // NOLINT(bugprone-incorrect-roundings)
+    const int column = static_cast<int>(point.u + 0.5F);
+    const int row = static_cast<int>(point.v + 0.5F);
     float& depth = nearest_.ptr<float>(row)[column];
     if (point.depth_m < depth) depth = point.depth_m;
   }

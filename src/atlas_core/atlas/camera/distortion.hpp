@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 namespace atlas {
 
@@ -64,6 +65,22 @@ struct Distortion {
       y *= f;
       return;
     }
+    polynomial(x, y);
+  }
+  /// apply() for many points; the polynomial loop has no branches.
+  void applyAll(Scalar* x, Scalar* y, std::size_t count) const {
+    if (kind == DistortionKind::kNone) return;
+    if (kind == DistortionKind::kPolynomial) {
+      const Distortion d = *this;  // by value: the stores cannot change it
+      for (std::size_t i = 0; i < count; ++i) d.polynomial(x[i], y[i]);
+      return;
+    }
+    for (std::size_t i = 0; i < count; ++i) apply(x[i], y[i]);
+  }
+
+ private:
+  void polynomial(Scalar& x, Scalar& y) const {
+    const Scalar s = x * x + y * y;
     const Scalar f = radial(s);
     const Scalar xy2 = 2 * x * y;
     const Scalar x_d = x * f + k[2] * xy2 + k[3] * (s + 2 * x * x);

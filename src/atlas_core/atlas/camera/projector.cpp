@@ -66,4 +66,36 @@ void Projector::boundField(const CameraModel& model) {
   max_y_ = static_cast<float>(std::min(limit, high.y() + kBorderMargin));
 }
 
+void Projector::seeBlock(const CompactSweep& sweep, std::size_t first, std::size_t count,
+                         const Eigen::Matrix<float, 3, 4>& T_camera_lidar, Block& block) const {
+  const float *x = &sweep.x[first], *y = &sweep.y[first], *z = &sweep.z[first];
+  const Eigen::Matrix<float, 3, 4> m = T_camera_lidar;  // by value: the stores below cannot change it
+  for (std::size_t i = 0; i < count; ++i) {
+    block.x[i] = m(0, 0) * x[i] + m(0, 1) * y[i] + m(0, 2) * z[i] + m(0, 3);
+    block.y[i] = m(1, 0) * x[i] + m(1, 1) * y[i] + m(1, 2) * z[i] + m(1, 3);
+    block.z[i] = m(2, 0) * x[i] + m(2, 1) * y[i] + m(2, 2) * z[i] + m(2, 3);
+  }
+  const Projector p = *this;  // the same
+  for (std::size_t i = 0; i < count; ++i) {
+    const float z_camera = block.z[i], x_over_z = block.x[i] / z_camera, y_over_z = block.y[i] / z_camera;
+    block.seen[i] = static_cast<std::int32_t>(z_camera >= p.min_depth_m_) &
+                    static_cast<std::int32_t>(z_camera <= p.max_depth_m_) &
+                    static_cast<std::int32_t>(block.x[i] >= p.min_x_ * z_camera) &
+                    static_cast<std::int32_t>(block.x[i] <= p.max_x_ * z_camera) &
+                    static_cast<std::int32_t>(block.y[i] >= p.min_y_ * z_camera) &
+                    static_cast<std::int32_t>(block.y[i] <= p.max_y_ * z_camera) &
+                    static_cast<std::int32_t>(x_over_z * x_over_z + y_over_z * y_over_z <= p.max_tangent_sq_);
+    block.x[i] = x_over_z;
+    block.y[i] = y_over_z;
+  }
+  p.distortion_.applyAll(block.x.data(), block.y.data(), count);
+  for (std::size_t i = 0; i < count; ++i) {
+    block.x[i] = p.fx_ * block.x[i] + p.cx_;
+    block.y[i] = p.fy_ * block.y[i] + p.cy_;
+    block.seen[i] &=
+        static_cast<std::int32_t>(block.x[i] >= -0.5F) & static_cast<std::int32_t>(block.y[i] >= -0.5F) &
+        static_cast<std::int32_t>(block.x[i] < p.right_) & static_cast<std::int32_t>(block.y[i] < p.bottom_);
+  }
+}
+
 }  // namespace atlas

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "atlas/base/geometry.hpp"
 #include "atlas/camera/camera_model.hpp"
@@ -43,11 +44,16 @@ class Projector {
   /// Calls visit(const ProjectedPoint&) for every point of the sweep that is seen, batch by batch.
   template <class Visit>
   void projectSweep(const CompactSweep& sweep, const Pose& T_camera_map, Visit&& visit) const {
+    Block block;
     for (const CompactSweep::Batch& batch : sweep.batches) {
       const Eigen::Matrix<float, 3, 4> T_camera_lidar = (T_camera_map * batch.T_map_lidar).matrix34f();
       if (!maySee(T_camera_lidar, batch.bounds)) continue;
       for (std::size_t first = batch.first; first < batch.end; first += kBlock) {
-        projectBlock(sweep, first, std::min(kBlock, batch.end - first), T_camera_lidar, visit);
+        const std::size_t count = std::min(kBlock, batch.end - first);
+        seeBlock(sweep, first, count, T_camera_lidar, block);
+        for (std::size_t i = 0; i < count; ++i) {
+          if (block.seen[i] != 0) visit(ProjectedPoint{block.x[i], block.y[i], block.z[i]});
+        }
       }
     }
   }
@@ -67,25 +73,15 @@ class Projector {
     seen = {fx_ * x + cx_, fy_ * y + cy_, z_camera};
     return seen.u >= -0.5F && seen.v >= -0.5F && seen.u < right_ && seen.v < bottom_;
   }
-  /// The transform is a loop of its own without branches: the compiler takes several points at a time.
-  template <class Visit>
-  void projectBlock(const CompactSweep& sweep, std::size_t first, std::size_t count,
-                    const Eigen::Matrix<float, 3, 4>& m, Visit&& visit) const {
-    const float *x = &sweep.x[first], *y = &sweep.y[first], *z = &sweep.z[first];
-    std::array<float, kBlock> x_camera, y_camera, z_camera;
-    const float m00 = m(0, 0), m01 = m(0, 1), m02 = m(0, 2), m03 = m(0, 3);
-    const float m10 = m(1, 0), m11 = m(1, 1), m12 = m(1, 2), m13 = m(1, 3);
-    const float m20 = m(2, 0), m21 = m(2, 1), m22 = m(2, 2), m23 = m(2, 3);
-    for (std::size_t i = 0; i < count; ++i) {
-      x_camera[i] = m00 * x[i] + m01 * y[i] + m02 * z[i] + m03;
-      y_camera[i] = m10 * x[i] + m11 * y[i] + m12 * z[i] + m13;
-      z_camera[i] = m20 * x[i] + m21 * y[i] + m22 * z[i] + m23;
-    }
-    ProjectedPoint seen;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (see(x_camera[i], y_camera[i], z_camera[i], seen)) visit(seen);
-    }
-  }
+  /// The same as see() for many points, written without branches so that the compiler takes several at once:
+  /// all are carried through to the pixel, and a mask says which of them count.
+  struct Block {
+    std::array<float, kBlock> x, y, z;  ///< p_camera, then x and y in px
+    std::array<std::int32_t, kBlock> seen;
+  };
+  void seeBlock(const CompactSweep& sweep, std::size_t first, std::size_t count,
+                const Eigen::Matrix<float, 3, 4>& T_camera_lidar, Block& block) const;
+
   void boundField(const CameraModel& model);
 
   float fx_, fy_, cx_, cy_;

@@ -77,6 +77,29 @@ bool anyPairWithin(const std::vector<LidarPoint>& points, const Cells& cells, st
   return false;
 }
 
+/// Says of most free cells that they are free, from a few kilobytes that stay in the fastest cache: three of
+/// four neighbours of a cell on a surface are free.
+class OccupiedCells {
+ public:
+  explicit OccupiedCells(const std::vector<VoxelKey>& keys) : bits_(kBits / 64, 0) {
+    for (const VoxelKey& key : keys) bits_[bitOf(key) / 64] |= std::uint64_t{1} << (bitOf(key) % 64);
+  }
+  [[nodiscard]] bool mayHold(const VoxelKey& key) const {
+    const std::uint32_t bit = bitOf(key);
+    return (bits_[bit / 64] >> (bit % 64) & 1U) != 0;
+  }
+
+ private:
+  static constexpr std::uint32_t kBits = 1U << 17U;
+  static std::uint32_t bitOf(const VoxelKey& key) {
+    return (static_cast<std::uint32_t>(key.x) * 0x9E3779B1U +
+            static_cast<std::uint32_t>(key.y) * 0x85EBCA77U +
+            static_cast<std::uint32_t>(key.z) * 0xC2B2AE3DU) >>
+           15U;
+  }
+  std::vector<std::uint64_t> bits_;
+};
+
 /// One of each pair of opposite neighbours that can hold a point within tolerance = sqrt(3) edges, nearest
 /// first: near neighbours usually join at once, and what is joined already needs no comparison of points.
 std::vector<VoxelKey> halfNeighbourhood() {
@@ -85,7 +108,7 @@ std::vector<VoxelKey> halfNeighbourhood() {
     for (std::int32_t y = -2; y <= 2; ++y) {
       for (std::int32_t z = -2; z <= 2; ++z) {
         const bool half = x > 0 || (x == 0 && (y > 0 || (y == 0 && z > 0)));
-        if (half) by_distance[static_cast<std::size_t>(x * x + y * y + z * z)].push_back({x, y, z});
+        if (half) by_distance.at(static_cast<std::uint32_t>(x * x + y * y + z * z)).push_back({x, y, z});
       }
     }
   }
@@ -108,9 +131,12 @@ std::vector<std::vector<std::uint32_t>> euclideanClusters(const std::vector<Lida
   const Cells cells = sortIntoCells(points, edge_m);
   const std::vector<VoxelKey>& keys = cells.index.keys();
   DisjointSets sets(keys.size());
+  const OccupiedCells occupied(keys);
   for (const VoxelKey& step : halfNeighbourhood()) {
     for (std::uint32_t a = 0; a < keys.size(); ++a) {
-      const std::uint32_t b = cells.index.find({keys[a].x + step.x, keys[a].y + step.y, keys[a].z + step.z});
+      const VoxelKey neighbour{keys[a].x + step.x, keys[a].y + step.y, keys[a].z + step.z};
+      if (!occupied.mayHold(neighbour)) continue;
+      const std::uint32_t b = cells.index.find(neighbour);
       if (b == VoxelIndex::kNone || sets.find(a) == sets.find(b)) continue;
       if (anyPairWithin(points, cells, a, b, tolerance_m * tolerance_m)) sets.unite(a, b);
     }

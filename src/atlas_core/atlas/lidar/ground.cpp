@@ -175,7 +175,6 @@ void GroundGrid::visit(int ix, int iy, double seed_m) {
 
 /// Cells that were not measured lie between the measured ones around them, on both sides.
 void GroundGrid::fill() {
-  const std::vector<Cell> grown = cells_;
   for (int iy = 0; iy < side_; ++iy) {
     for (int ix = 0; ix < side_; ++ix) {
       if (cell(ix, iy).believed) continue;

@@ -18,9 +18,9 @@ cv::Mat depthTo16Bit(const cv::Mat& depth_m) {
     const float* depth = depth_m.ptr<float>(row);
     std::uint16_t* unit = units.ptr<std::uint16_t>(row);
     for (int column = 0; column < depth_m.cols; ++column) {
-      const float rounding = depth[column] * kUnitsPerMetre + 0.5F;
-      if (rounding >= 1.0F && rounding < kLargestUnit + 1.0F)
-        unit[column] = static_cast<std::uint16_t>(rounding);  // truncation is floor here; NaN stays 0
+      const float value = depth[column] * kUnitsPerMetre + 0.5F;  // truncation rounds it to the nearest
+      const float known = value >= 1.0F && value < kLargestUnit + 1.0F ? value : 0.0F;  // NaN is not
+      unit[column] = static_cast<std::uint16_t>(static_cast<std::int32_t>(known));
     }
   }
   return units;
