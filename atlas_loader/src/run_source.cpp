@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "run_source.hpp"
 
-#include <std_msgs/Empty.h>
+#include <atlas_msgs/HelloRequest.h>
 
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include "atlas_ros/event_messages.hpp"
 #include "atlas_ros/stage_link.hpp"
@@ -17,33 +18,14 @@ constexpr atlas::Duration kPromiseStep = 20 * atlas::kMillisecond;  // of event 
 constexpr std::chrono::milliseconds kPoll(100);
 constexpr std::chrono::seconds kPatience(
     10);  // of wall time before a stage that everything waits for is named
+constexpr std::chrono::seconds kRelinkAfter(5);  // of wall time before links that are missing are made anew
+constexpr int kLettingGo = 5;                    // polls
 }  // namespace
 
 void validate(const RunSourceParams& params) {
   if (!(params.lead_s >= 0.5))
     throw std::invalid_argument("lead_s must be at least 0.5, got " + std::to_string(params.lead_s));
   if (params.stages.empty()) throw std::invalid_argument("stages: at least one stage is needed");
-}
-
-std::string missingInGraph(const std::vector<std::string>& expected_stages,
-                           const std::map<std::string, atlas_msgs::StageHello>& hellos) {
-  for (const std::string& stage : expected_stages) {
-    if (hellos.count(stage) == 0) return "stage " + stage + " has not said hello";
-  }
-  for (const auto& [consumer_name, consumer] : hellos) {
-    for (const std::string& topic : consumer.inputs) {
-      for (const auto& [producer_name, producer] : hellos) {
-        const bool produces =
-            std::find(producer.outputs.begin(), producer.outputs.end(), topic) != producer.outputs.end();
-        if (!produces || producer.process == consumer.process) continue;
-        const std::string link = topic + " " + consumer.process;
-        if (std::find(producer.links.begin(), producer.links.end(), link) == producer.links.end()) {
-          return consumer_name + " is not linked to " + topic + " of " + producer_name;
-        }
-      }
-    }
-  }
-  return "";
 }
 
 RunSource::RunSource(const ros::NodeHandle& handle, const RunSourceParams& params)
@@ -54,20 +36,40 @@ RunSource::RunSource(const ros::NodeHandle& handle, const RunSourceParams& param
   self.process = ros::this_node::getName();
   self.inputs = {handle_.resolveName("progress")};
   self.outputs = {handle_.resolveName("progress"), handle_.resolveName("graph_start")};
-  const auto connect = [this](const std::string& topic) {
-    return [this, topic](const ros::SingleSubscriberPublisher& s) { addLink(topic, s.getSubscriberName()); };
-  };
-  progress_ = handle_.advertise<atlas_msgs::StageProgress>("progress", 0, connect(self.outputs[0]));
-  start_ = handle_.advertise<atlas_msgs::GraphStart>("graph_start", 0, connect(self.outputs[1]));
-  hello_request_ = handle_.advertise<std_msgs::Empty>("hello_request", 0);
+  progress_ = handle_.advertise<atlas_msgs::StageProgress>("progress", 0, onConnect(self.outputs[0]),
+                                                           onDisconnect(self.outputs[0]));
+  start_ = handle_.advertise<atlas_msgs::GraphStart>("graph_start", 0, onConnect(self.outputs[1]),
+                                                     onDisconnect(self.outputs[1]));
+  connectHello();
+  subscribeProgress();
+}
+
+void RunSource::connectHello() {
+  hello_request_.shutdown();
+  hello_sub_.shutdown();
+  hello_request_ = handle_.advertise<atlas_msgs::HelloRequest>("hello_request", 0);
   hello_sub_ = handle_.subscribe("hello", atlas_ros::kKeepAll, &RunSource::onHello, this);
+}
+
+void RunSource::subscribeProgress() {
   progress_sub_ = handle_.subscribe("progress", atlas_ros::kKeepAll, &RunSource::onProgress, this);
 }
 
-void RunSource::addLink(const std::string& topic, const std::string& subscriber) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  hellos_[kSourceName].links.push_back(topic + " " + subscriber);
-  changed_.notify_all();
+ros::SubscriberStatusCallback RunSource::onConnect(const std::string& topic) {
+  return [this, topic](const ros::SingleSubscriberPublisher& subscriber) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    hellos_[kSourceName].links.push_back(topic + " " + subscriber.getSubscriberName());
+    changed_.notify_all();
+  };
+}
+
+ros::SubscriberStatusCallback RunSource::onDisconnect(const std::string& topic) {
+  return [this, topic](const ros::SingleSubscriberPublisher& subscriber) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<std::string>& links = hellos_[kSourceName].links;
+    const auto link = std::find(links.begin(), links.end(), topic + " " + subscriber.getSubscriberName());
+    if (link != links.end()) links.erase(link);
+  };
 }
 
 void RunSource::advertise(const std::vector<atlas::StreamInfo>& streams) {
@@ -81,9 +83,8 @@ void RunSource::advertise(const std::vector<atlas::StreamInfo>& streams) {
     }
     atlas_ros::withMessageType(stream.kind, [&](auto* type) {
       using Message = std::remove_pointer_t<decltype(type)>;
-      publishers_.push_back(handle_.advertise<Message>(
-          stream.topic, 0,
-          [this, topic](const ros::SingleSubscriberPublisher& s) { addLink(topic, s.getSubscriberName()); }));
+      publishers_.push_back(
+          handle_.advertise<Message>(stream.topic, 0, onConnect(topic), onDisconnect(topic)));
     });
   }
 }
@@ -110,18 +111,50 @@ void RunSource::onProgress(const atlas_msgs::StageProgressConstPtr& msg) {
 
 void RunSource::awaitGraph() {
   const auto begin = std::chrono::steady_clock::now();
+  auto tried = begin;
   std::string missing;
   while (ros::ok()) {
-    hello_request_.publish(std_msgs::Empty());
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait_for(lock, kPoll);
-    missing = missingInGraph(params_.stages, hellos_);
+    hello_request_.publish(atlas_msgs::HelloRequest());
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      changed_.wait_for(lock, kPoll);
+      missing = missingInGraph(params_.stages, hellos_);
+    }
     if (missing.empty()) return;
-    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
-    if (waited.count() > params_.graph_timeout_s) break;
+    const auto now = std::chrono::steady_clock::now();
+    if (std::chrono::duration<double>(now - begin).count() > params_.graph_timeout_s) break;
+    if (now - tried < kRelinkAfter) continue;
+    ROS_WARN("%s; connecting anew", missing.c_str());
+    relink();
+    tried = now;
   }
   throw std::runtime_error("the graph is not complete after " + std::to_string(params_.graph_timeout_s) +
                            " s: " + missing);
+}
+
+/// roscpp gives up a connection whose first request was lost, so the subscriber has to begin again. Stages of
+/// one process share a connection: all of them let go before one subscribes again.
+void RunSource::relink() {
+  atlas_msgs::HelloRequest request;
+  bool own = false, silent = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const MissingLink& link : missingLinks(hellos_)) {
+      own = own || link.consumer == kSourceName;
+      request.relink.push_back(link.topic + " " + link.process);
+    }
+    for (const std::string& stage : params_.stages) silent = silent || hellos_.count(stage) == 0;
+  }
+  if (silent) connectHello();
+  if (own) progress_sub_.shutdown();
+  for (int i = 0; i < kLettingGo; ++i) {
+    hello_request_.publish(request);
+    std::this_thread::sleep_for(kPoll);
+  }
+  if (own) subscribeProgress();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (auto hello = hellos_.begin(); hello != hellos_.end();)  // what they said is out of date
+    hello = hello->first == kSourceName ? std::next(hello) : hellos_.erase(hello);
 }
 
 std::vector<std::string> RunSource::wantedTopics() const {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <atlas_msgs/GraphStart.h>
-#include <atlas_msgs/StageHello.h>
 #include <atlas_msgs/StageProgress.h>
 #include <ros/ros.h>
 
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include "atlas/sensor/record_reader.hpp"
+#include "graph_check.hpp"
 
 namespace atlas_loader {
 
@@ -30,10 +30,6 @@ struct RunSourceParams {
 /// Throws std::invalid_argument naming the field and its value.
 void validate(const RunSourceParams& params);
 
-/// What keeps the graph from being complete, in words; empty when it is. Pure, for tests.
-std::string missingInGraph(const std::vector<std::string>& expected_stages,
-                           const std::map<std::string, atlas_msgs::StageHello>& hellos);
-
 class RunSource {
  public:
   RunSource(const ros::NodeHandle& handle, const RunSourceParams& params);
@@ -43,7 +39,8 @@ class RunSource {
   /// Topics (without the graph's namespace) that stages want and no stage produces; known once every stage
   /// has said hello.
   [[nodiscard]] std::vector<std::string> wantedTopics() const;
-  /// Blocks until every stage is there and linked; throws std::runtime_error that says what is missing.
+  /// Blocks until every stage is there and linked, makes links anew that do not come about; throws
+  /// std::runtime_error that says what is missing.
   void awaitGraph();
   /// Starts epoch n (0, 1, ...): the stages begin afresh.
   void begin(std::uint32_t epoch);
@@ -67,7 +64,11 @@ class RunSource {
  private:
   void onHello(const atlas_msgs::StageHelloConstPtr& msg);
   void onProgress(const atlas_msgs::StageProgressConstPtr& msg);
-  void addLink(const std::string& topic, const std::string& subscriber);
+  ros::SubscriberStatusCallback onConnect(const std::string& topic);
+  ros::SubscriberStatusCallback onDisconnect(const std::string& topic);
+  void connectHello();
+  void subscribeProgress();
+  void relink();
   void send(const atlas::Event& event);
   bool awaitStages(const std::function<bool()>& condition);
   [[nodiscard]] atlas::Stamp slowest() const;
@@ -85,7 +86,7 @@ class RunSource {
 
   mutable std::mutex mutex_;  ///< guards what follows
   std::condition_variable changed_;
-  std::map<std::string, atlas_msgs::StageHello> hellos_;  ///< by stage; the source itself under its own name
+  Hellos hellos_;  ///< the source itself under its own name
   std::map<std::string, StageReport> stages_;
   std::string failure_;
 };

@@ -32,24 +32,43 @@ ros::SubscriberStatusCallback StageLink::onConnect(const std::string& topic) {
   };
 }
 
+ros::SubscriberStatusCallback StageLink::onDisconnect(const std::string& topic) {
+  return [this, topic](const ros::SingleSubscriberPublisher& subscriber) {
+    const auto link = links_.find(topic + " " + subscriber.getSubscriberName());
+    if (link != links_.end()) links_.erase(link);
+    sayHello();
+  };
+}
+
 void StageLink::start(atlas::StageFactory factory) {
   factory_ = std::move(factory);
   hello_ = handle_.advertise<atlas_msgs::StageHello>("hello", kKeepAll);
   const std::string progress = handle_.resolveName("progress");
-  progress_ = handle_.advertise<atlas_msgs::StageProgress>("progress", kKeepAll, onConnect(progress));
-  subscribers_.push_back(handle_.subscribe<atlas_msgs::StageProgress>(
-      "progress", kKeepAll,
-      boost::function<void(const atlas_msgs::StageProgressConstPtr&)>(
-          [this](const atlas_msgs::StageProgressConstPtr& m) { guarded([&] { onProgress(*m); }); })));
-  subscribers_.push_back(handle_.subscribe<atlas_msgs::GraphStart>(
-      "graph_start", kKeepAll,
-      boost::function<void(const atlas_msgs::GraphStartConstPtr&)>(
-          [this](const atlas_msgs::GraphStartConstPtr& m) { guarded([&] { onGraphStart(*m); }); })));
-  subscribers_.push_back(
-      handle_.subscribe<std_msgs::Empty>("hello_request", kKeepAll,
-                                         boost::function<void(const std_msgs::EmptyConstPtr&)>(
-                                             [this](const std_msgs::EmptyConstPtr&) { sayHello(); })));
+  progress_ = handle_.advertise<atlas_msgs::StageProgress>("progress", kKeepAll, onConnect(progress),
+                                                           onDisconnect(progress));
+  subscribe<atlas_msgs::StageProgress>(
+      "progress", [this](const atlas_msgs::StageProgressConstPtr& m) { guarded([&] { onProgress(*m); }); });
+  subscribe<atlas_msgs::GraphStart>(
+      "graph_start", [this](const atlas_msgs::GraphStartConstPtr& m) { guarded([&] { onGraphStart(*m); }); });
+  hello_request_ = handle_.subscribe<atlas_msgs::HelloRequest>(
+      "hello_request", kKeepAll,
+      boost::function<void(const atlas_msgs::HelloRequestConstPtr&)>(
+          [this](const atlas_msgs::HelloRequestConstPtr& m) { onHelloRequest(*m); }));
   ready_ = true;  // the source asks until it has heard every stage
+}
+
+void StageLink::onHelloRequest(const atlas_msgs::HelloRequest& msg) {
+  if (!ready_) return;
+  for (Subscription& subscription : subscriptions_) {
+    const std::string link = subscription.topic + " " + ros::this_node::getName();
+    const bool let_go = std::find(msg.relink.begin(), msg.relink.end(), link) != msg.relink.end();
+    if (let_go) {
+      subscription.subscriber.shutdown();
+    } else if (!subscription.subscriber) {
+      subscription.subscriber = subscription.subscribe();
+    }
+  }
+  sayHello();
 }
 
 void StageLink::sayHello() {

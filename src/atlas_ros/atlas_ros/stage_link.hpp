@@ -5,11 +5,11 @@
 #pragma once
 
 #include <atlas_msgs/GraphStart.h>
+#include <atlas_msgs/HelloRequest.h>
 #include <atlas_msgs/StageHello.h>
 #include <atlas_msgs/StageProgress.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
-#include <std_msgs/Empty.h>
 
 #include <atomic>
 #include <boost/make_shared.hpp>
@@ -52,12 +52,9 @@ class StageLink {
         unusable_.skip(topic, value.reason());
       }
     };
-    subscribers_.push_back(handle_.subscribe<Message>(
-        topic, kKeepAll,
-        boost::function<void(const boost::shared_ptr<const Message>&)>(
-            [this, index, deliver](const boost::shared_ptr<const Message>& message) {
-              guarded([&] { onMessage(index, [deliver, message] { deliver(message); }); });
-            })));
+    subscribe<Message>(topic, [this, index, deliver](const boost::shared_ptr<const Message>& message) {
+      guarded([&] { onMessage(index, [deliver, message] { deliver(message); }); });
+    });
   }
   /// Advertises an output; the function publishes and counts, so that receivers know what to wait for.
   template <class T>
@@ -66,7 +63,7 @@ class StageLink {
     auto out = std::make_shared<Output>();
     out->topic = resolved;
     out->publisher = handle_.advertise<typename MessageOf<T>::Message>(topic, kKeepAll, onConnect(resolved),
-                                                                       {}, {}, latch);
+                                                                       onDisconnect(resolved), {}, latch);
     outputs_.push_back(out);
     return [out](const T& value) {
       out->publisher.publish(boost::make_shared<typename MessageOf<T>::Message>(MessageOf<T>::to(value)));
@@ -100,7 +97,23 @@ class StageLink {
     std::uint64_t count = 0;
   };
 
+  struct Subscription {
+    std::string topic;
+    std::function<ros::Subscriber()> subscribe;
+    ros::Subscriber subscriber;  ///< empty while the source wants the link to be made anew
+  };
+
+  template <class Message>
+  void subscribe(const std::string& topic,
+                 boost::function<void(const boost::shared_ptr<const Message>&)> callback) {
+    const auto again = [this, topic, callback] {
+      return handle_.subscribe<Message>(topic, kKeepAll, callback);
+    };
+    subscriptions_.push_back({handle_.resolveName(topic), again, again()});
+  }
   ros::SubscriberStatusCallback onConnect(const std::string& topic);
+  ros::SubscriberStatusCallback onDisconnect(const std::string& topic);
+  void onHelloRequest(const atlas_msgs::HelloRequest& msg);
   void onMessage(std::size_t index, std::function<void()> push);
   void onGraphStart(const atlas_msgs::GraphStart& msg);
   void onProgress(const atlas_msgs::StageProgress& msg);
@@ -117,9 +130,10 @@ class StageLink {
   std::map<std::size_t, Input> inputs_;
   std::vector<std::shared_ptr<Output>> outputs_;
   atlas::Counters unusable_;
-  std::vector<ros::Subscriber> subscribers_;
+  std::vector<Subscription> subscriptions_;
   ros::Publisher hello_, progress_;
-  std::set<std::string> links_;
+  ros::Subscriber hello_request_;
+  std::multiset<std::string> links_;  ///< "<output topic> <process>" of every connection that is there
   std::uint32_t epoch_ = 0;
   std::atomic<bool> ready_{false};  ///< every subscription is made; no hello before: a run must not begin yet
   bool running_ = false;            ///< between GraphStart and the end of the epoch

@@ -36,6 +36,17 @@ TEST(Graph, LinksBetweenProcessesNeedConfirmation) {
   EXPECT_EQ(atlas_loader::missingInGraph({"a", "b"}, hellos), "");
 }
 
+TEST(Graph, EveryMissingLinkIsNamedWithTheProcessThatHasToSubscribeAgain) {
+  const auto links = atlas_loader::missingLinks({{"a", hello("a", "/a", {}, {"/x", "/y"}, {"/x /b"})},
+                                                 {"b", hello("b", "/b", {"/x", "/y"}, {"/z"})},
+                                                 {"c", hello("c", "/c", {"/x", "/z"}, {})}});
+  ASSERT_EQ(links.size(), 3U);
+  EXPECT_EQ(links[0].topic + " " + links[0].process, "/y /b");
+  EXPECT_EQ(links[1].topic + " " + links[1].process, "/x /c");
+  EXPECT_EQ(links[2].topic + " " + links[2].process, "/z /c");
+  EXPECT_EQ(links[2].producer, "b");
+}
+
 TEST(Graph, ATopicWithoutProducerIsNoObstacle) {
   EXPECT_EQ(atlas_loader::missingInGraph({"b"}, {{"b", hello("b", "/b", {"/nobody"}, {})}}), "");
 }
