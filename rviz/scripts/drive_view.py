@@ -2,6 +2,7 @@
 """What screenshot and watch share: a ROS master of their own, view.launch and replay.launch on it, and an end that leaves nothing
 behind."""
 import os
+import re
 import shutil
 import signal
 import socket
@@ -14,6 +15,7 @@ from pathlib import Path
 
 KITTI_FOLDERS = ("oxts", "velodyne_points", "image_02")
 CLOUD_TOPIC = "/atlas/cloud"  # a topic that every configuration of RViz shows
+COLOR = re.compile(r"\x1b(\[[0-9;]*m|\]2;)")  # escapes of the terminal
 MARK = "ATLAS_DRIVE_VIEW"     # environment variable of all processes of a session
 
 
@@ -62,20 +64,21 @@ class Session:
         self.environment.pop("ROS_HOSTNAME", None)
         self.environment.update({
             "ROS_MASTER_URI": f"http://127.0.0.1:{self.port}", "ROS_IP": "127.0.0.1", MARK: self.mark,
-            "ROS_HOME": str(self.folder / "ros"), "ROS_LOG_DIR": str(self.folder / "ros/log")})
+            "ROS_HOME": str(self.folder / "ros"), "ROS_LOG_DIR": str(self.folder / "ros/log"),
+            "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1"})  # or the last lines are missing in a log
         self.processes = []
 
     def __enter__(self):
         return self
 
     def __exit__(self, kind, error, trace):
-        self.end()
         if kind is not None and not self.verbose:
             self.print_logs()
+        self.end()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def start(self, name, command, **options):
-        """A process in a group of its own; what it prints goes to the terminal (verbose) or to a log that failures show."""
+        """A process in a session of its own; what it prints goes to the terminal (verbose) or to a log that failures show."""
         output = None if self.verbose else open(self.folder / f"{name}.log", "wb")
         process = subprocess.Popen(command, env=self.environment, stdin=subprocess.DEVNULL, stdout=output,
                                    stderr=None if self.verbose else subprocess.STDOUT, start_new_session=True, **options)
@@ -107,12 +110,16 @@ class Session:
         raise Failed(f"RViz did not subscribe within {limit_s:.0f} s")
 
     def end(self, patience_s=8.0):
-        """Interrupts everything, waits, and kills what is still there."""
-        for process in reversed(self.processes):
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGINT)
+        """Interrupts the processes, the screen after all others, waits, and kills what is still there."""
         deadline = time.monotonic() + patience_s
-        while time.monotonic() < deadline and (any(p.poll() is None for p in self.processes) or self.survivors()):
+        screens = [p for p in self.processes if p.args[0] == "Xvfb"]
+        for group in ([p for p in self.processes if p not in screens], screens):
+            for process in group:
+                if process.poll() is None:
+                    process.send_signal(signal.SIGINT)  # roslaunch ends its nodes, which have groups of their own
+            while time.monotonic() < deadline and any(p.poll() is None for p in group):
+                time.sleep(0.1)
+        while time.monotonic() < deadline and self.survivors():
             time.sleep(0.1)
         for pid in self.survivors():
             try:
@@ -139,8 +146,9 @@ class Session:
         log = self.folder / f"{name}.log"
         return log.read_text(errors="replace") if log.exists() else ""
 
-    def print_logs(self, lines=15):
+    def print_logs(self, lines=10):
+        """Errors, and the last lines, of every process."""
         for log in sorted(self.folder.glob("*.log")):
-            print(f"--- {log.stem}", file=sys.stderr)
-            for line in log.read_text(errors="replace").splitlines()[-lines:]:
-                print(line, file=sys.stderr)
+            text = COLOR.sub("", self.log(log.stem)).splitlines()
+            errors = [line for line in text[:-lines] if "FATAL" in line or "ERROR" in line]
+            print("\n".join([f"--- {log.stem}", *errors, *text[-lines:]]), file=sys.stderr)

@@ -182,11 +182,14 @@ class WholeRun(unittest.TestCase):
 
 def write_junit(path, suite_name, result, names):
     bad = {str(test): text for test, text in result.failures + result.errors}
+    skipped = {str(test): reason for test, reason in result.skipped}
     suite = xml.Element("testsuite", name=suite_name, tests=str(len(names)), failures=str(len(bad)), errors="0")
     for name in names:
         case = xml.SubElement(suite, "testcase", classname=suite_name, name=name.split()[0])
         if name in bad:
             xml.SubElement(case, "failure", message="failed").text = bad.pop(name)
+        elif name in skipped:
+            xml.SubElement(case, "skipped", message=skipped[name])
     for name, text in bad.items():  # setUpClass
         case = xml.SubElement(suite, "testcase", classname=suite_name, name=name)
         xml.SubElement(case, "failure", message="failed").text = text
