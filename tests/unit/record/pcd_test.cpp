@@ -70,7 +70,7 @@ TEST(Pcd, LzfBackReferences) {
                                         5),
                             6, out));
   EXPECT_EQ(out, "ababab");
-  EXPECT_FALSE(decompressLzf(std::string("\x40\x01", 2), 6, out)) << "reference before the begin";
+  EXPECT_FALSE(decompressLzf(std::string("\x40\x01", 2), 4, out)) << "reference before the begin";
   EXPECT_FALSE(decompressLzf(std::string("\x01"
                                          "a",
                                          2),

@@ -125,6 +125,9 @@ TEST_F(Videos, SpanInTheMiddleOfAGroupOfPicturesLosesNone) {
       EXPECT_GT(event.stamp, span.begin - kMillisecond) << "what is before is only there for decoding";
       EXPECT_LT(event.stamp, span.end);
     }
+    const auto& first_packet = *std::get<VideoPacketPtr>(packet_events.at(0).payload);
+    EXPECT_EQ(first_packet.decode_index, static_cast<std::uint32_t>(first / 30 * 30))
+        << "the keyframe before";
     const auto images = decode(packet_events);
     ASSERT_EQ(images.size(), static_cast<std::size_t>(expected)) << first;
     for (int k = 0; k < expected; ++k) {
