@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The whole data path in order: the first file to read.
 //
-//   imu/data, gnss/fix, gnss/heading -> localization -> odometry
+//   imu/data, gnss/fix, gnss/heading,
+//   imu/gnss/fix (second receiver)   -> localization -> odometry
 //   <lidar>/points, odometry         -> deskew       -> <lidar>/batches
 //   <lidar>/batches                  -> aggregate    -> cloud
 //   <lidar>/batches, odometry        -> obstacles    -> obstacles
@@ -79,6 +80,10 @@ StageFactory bindLocalization(Bus& bus, const LocalizationParams& params) {
   bus.template input<S, GnssHeading>(S::kGnssHeading, "gnss/heading",
                                      [](S& s, const GnssHeading& h) { s.push(h); });
   bus.template input<S, ImuSample>(S::kImu, "imu/data", [](S& s, const ImuSample& imu) { s.push(imu); });
+  if (params.receivers.second_receiver) {
+    bus.template input<S, GnssFix>(S::kSecondFix, "imu/gnss/fix",
+                                   [](S& s, const GnssFix& fix) { s.pushSecond(fix); });
+  }
   const auto odometry = bus.template output<Odometry>("odometry");
   const auto anchor = bus.template output<Anchor>("anchor");
   return [=] {

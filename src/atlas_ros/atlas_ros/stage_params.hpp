@@ -20,6 +20,16 @@ void readParams(Reader& reader, atlas::LocalizationParams& p) {
   reader.read("tilt_time_constant_s", q.tilt_time_constant_s);
   reader.read("velocity_heading_min_speed_mps", q.velocity_heading_min_speed_mps);
   reader.read("max_imu_gap_s", q.max_imu_gap_s);
+  atlas::ReceiverParams& r = p.receivers;
+  reader.readOptional("second_receiver", r.second_receiver);
+  reader.readOptional("second_gnss_antenna_frame", r.second_gnss_antenna_frame);
+  reader.readOptional("fallback_after_s", r.fallback_after_s);
+  reader.readOptional("second_gnss_horizontal_sigma_m", r.second_gnss_horizontal_sigma_m);
+  reader.readOptional("second_gnss_vertical_sigma_m", r.second_gnss_vertical_sigma_m);
+  reader.readOptional("second_gnss_error_time_s", r.second_gnss_error_time_s);
+  reader.readOptional("accelerometer_range_mps2", p.imu_guard.accelerometer_range_mps2);
+  reader.readOptional("gyroscope_range_radps", p.imu_guard.gyroscope_range_radps);
+  reader.readOptional("imu_frozen_after_s", p.imu_guard.frozen_after_s);
   atlas::EskfParams& e = q.eskf;  // of the filter "eskf"; defaults hold for cars with a MEMS IMU
   reader.readOptional("eskf_accelerometer_noise_mps2_sqrt_hz", e.accelerometer_noise_mps2_sqrt_hz);
   reader.readOptional("eskf_gyroscope_noise_radps_sqrt_hz", e.gyroscope_noise_radps_sqrt_hz);

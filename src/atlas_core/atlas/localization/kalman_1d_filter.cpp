@@ -210,7 +210,17 @@ void Kalman1dFilter::use(const Fix& fix) {
   }
   double mahalanobis_sq = 0.0;
   for (std::size_t i = 0; i < 3; ++i) mahalanobis_sq += axes_[i].mahalanobisSq(measured(i), variance(i));
-  if (mahalanobis_sq > params_.gate_mahalanobis_sq) {
+  const bool outlier = mahalanobis_sq > params_.gate_mahalanobis_sq;
+  if (on_innovation) {
+    InnovationRecord record{current_->stamp, "fix", 3, {}, {}, mahalanobis_sq, !outlier};
+    for (int i = 0; i < 3; ++i) {
+      const Kalman1dAxis& axis = axes_[static_cast<std::size_t>(i)];
+      record.innovation(i) = measured(i) - axis.position();
+      record.sigma(i) = std::sqrt(axis.covariance()(0, 0) + variance(i));
+    }
+    on_innovation(record);
+  }
+  if (outlier) {
     counters_.add("skipped fix: outlier");
     if (++outliers_in_a_row_ < params_.max_consecutive_rejections) return;
     locate(fix);

@@ -4,20 +4,33 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "atlas/base/check.hpp"
 #include "atlas/localization/eskf_history.hpp"
 
 namespace atlas {
 namespace {
 constexpr double kMaxNormError = 1e-2;  // quaternions recorded with six digits, with room
+
+std::vector<std::string> inputNames(const LocalizationParams& params) {
+  std::vector<std::string> names = {"tf_static", "gnss/fix", "gnss/heading", "imu"};
+  if (params.receivers.second_receiver) names.emplace_back("imu/gnss/fix");
+  return names;
+}
 }  // namespace
 
 void validate(const LocalizationParams& params) {
   Counters counters;
   makePositioningFilter(params.filter, params.positioning, Eigen::Vector3d::Zero(), {}, counters);
+  validate(params.receivers);
+  validate(params.imu_guard);
 }
 
 LocalizationStage::LocalizationStage(const LocalizationParams& params)
-    : Stage("localization", {"tf_static", "gnss/fix", "gnss/heading", "imu"}), params_(params) {
+    : Stage("localization", inputNames(params)),
+      params_(params),
+      receivers_(params.receivers, counters_),
+      guard_(params.imu_guard, counters_),
+      keeper_(counters_) {
   validate(params_);
 }
 
@@ -29,62 +42,15 @@ void LocalizationStage::push(Stamp stamp, const StaticTransforms& transforms) {
 void LocalizationStage::push(const GnssFix& fix) {
   enqueue(kGnssFix, fix.stamp, [this, fix] { use(fix); });
 }
+void LocalizationStage::pushSecond(const GnssFix& fix) {
+  ATLAS_CHECK(params_.receivers.second_receiver, "localization: there is no second receiver");
+  enqueue(kSecondFix, fix.stamp, [this, fix] { useSecond(fix); });
+}
 void LocalizationStage::push(const GnssHeading& heading) {
   enqueue(kGnssHeading, heading.stamp, [this, heading] { use(heading); });
 }
 void LocalizationStage::push(const ImuSample& sample) {
   enqueue(kImu, sample.stamp, [this, sample] { use(sample); });
-}
-
-Outcome<Eigen::Vector3d> LocalizationStage::leverArm(const GnssFix& fix) const {
-  const std::string& frame = params_.gnss_antenna_frame.empty() ? fix.frame : params_.gnss_antenna_frame;
-  if (frame.empty()) return Eigen::Vector3d(Eigen::Vector3d::Zero());  // nobody says that it is elsewhere
-  const Outcome<Pose> T_imu_antenna = rig_.T_imu(frame);
-  if (!T_imu_antenna) return T_imu_antenna.reason();
-  return T_imu_antenna->translation;
-}
-
-Eigen::Matrix3d LocalizationStage::covarianceOf(const GnssFix& fix) {
-  const double horizontal = std::pow(params_.positioning.gnss_horizontal_sigma_m, 2);
-  const double vertical = std::pow(params_.positioning.gnss_vertical_sigma_m, 2);
-  const Eigen::Matrix3d assumed = Eigen::Vector3d(horizontal, horizontal, vertical).asDiagonal();
-  if (!fix.covariance_enu_m2) return assumed;
-  const Eigen::Matrix3d given =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(fix.covariance_enu_m2->data());
-  if (given.allFinite() && given.diagonal().minCoeff() > 0.0) return given;
-  counters_.add("fix covariance unusable, parameter taken");
-  return assumed;
-}
-
-void LocalizationStage::use(const GnssFix& fix) {
-  counters_.add("fix");
-  const Geodetic& g = fix.position;
-  if (!std::isfinite(g.latitude_deg) || !std::isfinite(g.longitude_deg) || !std::isfinite(g.altitude_m)) {
-    counters_.skip("fix", Reason::kNotFinite);
-    return;
-  }
-  if (std::abs(g.latitude_deg) > 90.0 || std::abs(g.longitude_deg) > 360.0) {
-    counters_.skip("fix", Reason::kBadLayout);
-    return;
-  }
-  if (!map_) {
-    map_.emplace(g);
-    if (on_anchor) on_anchor({fix.stamp, g});
-  }
-  if (params_.smoothed) return;
-  if (!filter_) {
-    const Outcome<Eigen::Vector3d> lever_arm_imu = leverArm(fix);
-    if (!lever_arm_imu) {
-      counters_.skip("fix", lever_arm_imu.reason());
-      return;
-    }
-    filter_ =
-        makePositioningFilter(params_.filter, params_.positioning, *lever_arm_imu, map_->anchor(), counters_);
-    if (history_ != nullptr) filter_->record(history_);
-    if (on_innovation) filter_->on_innovation = on_innovation;
-    if (last_imu_) filter_->propagate(*last_imu_);
-  }
-  filter_->update(fix.stamp, map_->toMap(g), covarianceOf(fix));
 }
 
 void LocalizationStage::use(const GnssHeading& heading) {
@@ -114,6 +80,7 @@ void LocalizationStage::use(const GnssHeading& heading) {
 
 void LocalizationStage::use(const ImuSample& sample) {
   counters_.add("imu");
+  receivers_.begin(sample.stamp);
   if (params_.smoothed) {
     answerSmoothed(sample.stamp);
     return;
@@ -122,6 +89,7 @@ void LocalizationStage::use(const ImuSample& sample) {
     counters_.skip("imu", Reason::kNotFinite);
     return;
   }
+  if (!guard_.usable(sample)) return;
   ImuSample clean = sample;
   if (clean.orientation) {
     const double norm = clean.orientation->norm();
@@ -132,17 +100,23 @@ void LocalizationStage::use(const ImuSample& sample) {
       clean.orientation.reset();
     }
   }
-  if (!filter_) {
+  if (filter_) {
+    answer(clean.stamp, filter_->propagate(clean));
+  } else {
     last_imu_ = clean;
-    counters_.skip("odometry", Reason::kNoPoseYet);
-    return;
+    answer(clean.stamp, std::nullopt);
   }
-  const std::optional<Odometry> odometry = filter_->propagate(clean);
-  if (!odometry) {
+}
+
+void LocalizationStage::answer(Stamp stamp, const std::optional<Odometry>& odometry) {
+  keeper_.answer(stamp, odometry);
+  if (odometry) {
+    receivers_.predicted(*odometry);
+    emit(*odometry);
+  } else {
     counters_.skip("odometry", Reason::kNoPoseYet);
-    return;
   }
-  emit(*odometry);
+  if (on_status && keeper_.due(stamp)) on_status(keeper_.status(stamp, imuBias()));
 }
 
 void LocalizationStage::emit(const Odometry& odometry) {

@@ -10,7 +10,10 @@
 
 #include "atlas/base/stage.hpp"
 #include "atlas/calibration/rig.hpp"
+#include "atlas/localization/imu_guard.hpp"
+#include "atlas/localization/localization_status.hpp"
 #include "atlas/localization/positioning_filter.hpp"
+#include "atlas/localization/receivers.hpp"
 #include "atlas/sensor/products.hpp"
 
 namespace atlas {
@@ -21,6 +24,8 @@ struct LocalizationParams {
   /// imu).
   std::string gnss_antenna_frame = "gnss_rear";
   PositioningParams positioning;
+  ReceiverParams receivers;
+  ImuGuardParams imu_guard;
   /// A smoothed run over the same data: the stage answers from it instead of filtering (second pass offline).
   std::shared_ptr<const eskf::History> smoothed;
 };
@@ -29,13 +34,20 @@ void validate(const LocalizationParams& params);
 
 class LocalizationStage : public Stage {
  public:
-  enum Input : std::size_t { kTfStatic, kGnssFix, kGnssHeading, kImu, kInputs };
+  enum Input : std::size_t {
+    kTfStatic,
+    kGnssFix,
+    kGnssHeading,
+    kImu,
+    kSecondFix
+  };  ///< kSecondFix: if asked for
 
   explicit LocalizationStage(const LocalizationParams& params);
   ~LocalizationStage() override;
 
   void push(Stamp stamp, const StaticTransforms& transforms);
   void push(const GnssFix& fix);
+  void pushSecond(const GnssFix& fix);
   void push(const GnssHeading& heading);
   void push(const ImuSample& sample);
 
@@ -49,16 +61,26 @@ class LocalizationStage : public Stage {
       on_odometry;                               ///< one per IMU sample once position and heading are known
   std::function<void(const Anchor&)> on_anchor;  ///< once, with the first fix
   std::function<void(const InnovationRecord&)> on_innovation;  ///< one per measurement, used or not
+  std::function<void(const LocalizationStatus&)> on_status;    ///< once a second and at every change
 
  protected:
   void onEnd() override;
 
  private:
+  // localization_fixes.cpp
   void use(const GnssFix& fix);
+  void useSecond(const GnssFix& fix);
+  [[nodiscard]] bool isPosition(const GnssFix& fix, const char* what);
+  [[nodiscard]] Outcome<Eigen::Vector3d> leverArm(const GnssFix& fix, const std::string& frame) const;
+  [[nodiscard]] Eigen::Matrix3d covarianceOf(const GnssFix& fix, double horizontal_m, double vertical_m);
+  void anchorAt(const GnssFix& fix);
+  void startFilter(const Eigen::Vector3d& lever_arm_imu);
+  void giveToFilter(const Receivers::Fix& fix, Receivers::Use receiver);
+  void onInnovation(const InnovationRecord& record);
+
   void use(const GnssHeading& heading);
   void use(const ImuSample& sample);
-  [[nodiscard]] Outcome<Eigen::Vector3d> leverArm(const GnssFix& fix) const;
-  [[nodiscard]] Eigen::Matrix3d covarianceOf(const GnssFix& fix);
+  void answer(Stamp stamp, const std::optional<Odometry>& odometry);
 
   LocalizationParams params_;
   Rig rig_;
@@ -68,6 +90,12 @@ class LocalizationStage : public Stage {
   void answerSmoothed(Stamp stamp);
 
   std::unique_ptr<PositioningFilter> filter_;
+  Eigen::Vector3d filter_lever_ = Eigen::Vector3d::Zero();  ///< of the fixes that the filter expects
+  Receivers receivers_;
+  ImuGuard guard_;
+  StatusKeeper keeper_;
+  Stamp second_in_filter_ = kBeginOfTime;  ///< newest fix of the second receiver that the filter was given
+  std::optional<Geodetic> second_before_;
   eskf::History* history_ = nullptr;
   std::size_t smoothed_next_ = 0;  ///< first smoothed sample that is not older than the present one
 };

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Which samples of an IMU can be believed. A sample that cannot is counted under its reason and left out: the
+// filter then sees a gap and lets its uncertainty grow. Units that are wrong end the run in words.
+//
+//   saturated    a value at the range limit. Without a given range the limit is learned: the largest
+//   magnitude
+//                so far, three times in a row exactly, where no range ends below (2 g, 1.7 rad/s)
+//   frozen       all six values exactly the same for a while, in a signal that used to vary
+//   beyond       more than any IMU of a vehicle measures
+//   gap          more than five usual periods without a sample: counted, with its length
+//   wrong units  mean acceleration of the first seconds in g, without gravity, or pointing down; turn rates
+//   in
+//                degrees (against the IMU's own orientation, or faster than a vehicle turns)
+#pragma once
+
+#include <optional>
+
+#include "atlas/base/counters.hpp"
+#include "atlas/sensor/sensor.hpp"
+
+namespace atlas {
+
+struct ImuGuardParams {
+  double accelerometer_range_mps2 = 0.0;  ///< values at it are saturated; 0: learned
+  double gyroscope_range_radps = 0.0;     ///< same
+  double frozen_after_s = 0.2;            ///< so long the same values; 0: never
+};
+/// Throws std::invalid_argument that names the field and its value.
+void validate(const ImuGuardParams& params);
+
+class ImuGuard {
+ public:
+  /// `counters` must outlive it.
+  ImuGuard(const ImuGuardParams& params, Counters& counters);
+  /// False: counted, not to be used. Throws std::runtime_error when the units cannot be right. Finite values.
+  bool usable(const ImuSample& sample);
+
+ private:
+  /// Three axes that share a range.
+  struct Group {
+    double range = 0.0;  ///< 0: not known
+    bool learned = false;
+    double least = 0.0;  ///< no range ends below
+    double largest = 0.0;
+    int repeats[3] = {0, 0, 0};  ///< samples in a row with the same value
+    bool saturated(const Eigen::Vector3d& now, const Eigen::Vector3d& before);
+  };
+  void watchGap(const ImuSample& sample);
+  [[nodiscard]] bool frozen(const ImuSample& sample);
+  void watchUnits(const ImuSample& sample);
+  void judgeUnits(double span_s);
+
+  ImuGuardParams params_;
+  Counters& counters_;
+  Group accel_, gyro_;
+  std::optional<ImuSample> before_;
+  double period_s_ = 0.0;
+  int varied_ = 0, same_ = 0;
+  Stamp same_since_ = 0;
+
+  struct Window {
+    Stamp begin = 0;
+    Eigen::Vector3d force_sum = Eigen::Vector3d::Zero(), turned_rad = Eigen::Vector3d::Zero();
+    double turning_rad = 0.0;      ///< sum of the sizes of all turns
+    double own_turning_rad = 0.0;  ///< same of the IMU's own orientation
+    int samples = 0;
+  };
+  std::optional<Window> window_;
+  bool force_judged_ = false;
+};
+
+}  // namespace atlas
