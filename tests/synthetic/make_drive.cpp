@@ -21,6 +21,10 @@ int run(int argc, char** argv) {
   app.add_option("--duration", options.duration_s, "s")->capture_default_str();
   app.add_option("--skip", options.skip_s, "begin this many seconds into the route (12 = before the turn)")
       ->capture_default_str();
+  app.add_option("--stop-at", options.stop_at_s, "with --stop-for: from this second of the route on")
+      ->capture_default_str();
+  app.add_option("--stop-for", options.stop_for_s, "the first standstill lasts so many seconds longer")
+      ->capture_default_str();
   app.add_option("--rgb-scale", options.rgb_scale, "size of the RGB images, of 1920x1200")
       ->capture_default_str();
   app.add_option("--cameras", options.cameras, "camera_left_front,...")->delimiter(',');

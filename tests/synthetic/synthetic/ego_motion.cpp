@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "synthetic/ground.hpp"
 
@@ -54,7 +55,8 @@ Eigen::Vector2d turnPosition(double s) {
 
 }  // namespace
 
-EgoMotion::EgoMotion(double duration_s, double gravity_mps2) : gravity_mps2_(gravity_mps2) {
+EgoMotion::EgoMotion(double duration_s, double gravity_mps2, const LongStop& stop)
+    : gravity_mps2_(gravity_mps2), stop_(stop) {
   ramps_.push_back({0.0, 0.0, 0.0, 0.0, 0.0});
   segments_.push_back({0.0, 0.0, 0.5 * kBlockPitch, -kLane, 0.0, 0});
   bool left = true;
@@ -88,6 +90,8 @@ void EgoMotion::addCycle(bool left) {
   const double accelerate_s = 7.0, slow_s = 2.5, leave_s = 3.5, brake_s = 5.0;
   const double changing = 0.5 * (kCruise + kTurnSpeed);
   addRamp(4.0, 0.0);
+  const SpeedRamp& standing = ramps_.back();
+  if (stop_.for_s > 0.0 && standing.start_s >= stop_.at_s) addRamp(std::exchange(stop_.for_s, 0.0), 0.0);
   addRamp(accelerate_s, kCruise);
   addRamp((straight - 0.5 * kCruise * accelerate_s - changing * slow_s) / kCruise, kCruise);
   addRamp(slow_s, kTurnSpeed);

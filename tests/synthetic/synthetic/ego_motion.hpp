@@ -18,10 +18,15 @@ struct ImuKinematics {
   Eigen::Vector3d specific_force_mps2;  ///< points up at rest
 };
 
+/// A red light: the first standstill that begins at or after `at_s` lasts `for_s` longer.
+struct LongStop {
+  double at_s = 0.0, for_s = 0.0;
+};
+
 class EgoMotion {
  public:
   /// Route for at least `duration_s` seconds (no end is visible before). gravity_mps2 > 0 points down.
-  EgoMotion(double duration_s, double gravity_mps2);
+  EgoMotion(double duration_s, double gravity_mps2, const LongStop& stop = {});
 
   /// T_city_imu at t seconds after the start of the route; stands still before 0.
   [[nodiscard]] Pose T_city_imu(double t_s) const;
@@ -59,6 +64,7 @@ class EgoMotion {
   [[nodiscard]] static PathPoint within(const Segment& segment, double along_m);
 
   double gravity_mps2_;
+  LongStop stop_;  ///< for_s becomes 0 when it is part of the route
   std::vector<SpeedRamp> ramps_;
   std::vector<Segment> segments_;
 };

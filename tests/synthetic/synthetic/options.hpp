@@ -38,9 +38,11 @@ struct NoiseOptions {
 struct DriveOptions {
   std::uint64_t seed = 1;
   double duration_s = 30.0;
-  double skip_s = 0.0;     ///< the record begins this long after the start of the route
-  double rgb_scale = 0.5;  ///< of 1920x1200
-  bool video = true;       ///< false: no mp4 and no depth pictures; boxes and detections are still made
+  double skip_s = 0.0;  ///< the record begins this long after the start of the route
+  double stop_at_s = 0.0,
+         stop_for_s = 0.0;  ///< the first standstill from stop_at_s of the route on is longer
+  double rgb_scale = 0.5;   ///< of 1920x1200
+  bool video = true;        ///< false: no mp4 and no depth pictures; boxes and detections are still made
   bool lidar = true;
   bool scans_zip = true;  ///< false: scan%06d.pcd in the lidar's folder
   std::vector<std::string> cameras = {"camera_left_front", "camera_left_side", "camera_right_front",

@@ -51,6 +51,8 @@ void writeMeta(const World& world, const Path& path) {
       {"seed", o.seed},
       {"duration_s", o.duration_s},
       {"skip_s", o.skip_s},
+      {"stop_at_s", o.stop_at_s},
+      {"stop_for_s", o.stop_for_s},
       {"start_ns", o.start},
       {"rgb_scale", o.rgb_scale},
       {"imu_latency_s", o.imu_latency_s},
