@@ -157,7 +157,8 @@ void LocalizationStage::useSecond(const GnssFix& fix) {
     Geodetic level = g;
     level.altitude_m = map_->toGeodetic({in_map.p_map_antenna.x(), in_map.p_map_antenna.y(), z}).altitude_m;
     in_map.p_map_antenna = map_->toMap(level);
-    in_map.R_m2(2, 2) = kUnknownAltitude_m * kUnknownAltitude_m;
+    // A filter that starts is near the place it takes the height from.
+    if (!receivers_.starting(fix.stamp)) in_map.R_m2(2, 2) = kUnknownAltitude_m * kUnknownAltitude_m;
   }
   const auto needed = receivers_.second(in_map);
   if (!needed) return;

@@ -55,9 +55,8 @@ void Receivers::taken(Stamp stamp, Use receiver) {
 }
 
 std::optional<Receivers::Misfit> Receivers::misfit(const Fix& fix) const {
-  if (!odometry_) return std::nullopt;
+  if (starting(fix.stamp)) return std::nullopt;
   const double dt = toSeconds(fix.stamp - odometry_->stamp);
-  if (dt > kStale_s) return std::nullopt;
   const Pose& T = odometry_->T_map_imu;
   const Eigen::Vector3d p = fix.p_map_antenna - T.rotation * fix.lever_arm_imu;
   const Eigen::Vector3d ahead = T.translation + dt * (T.rotation * odometry_->velocity_imu_mps);
@@ -77,6 +76,10 @@ bool Receivers::jumped(const Fix& first) {
   const double variance = second_->variance_m2 + 0.5 * first.R_m2.topLeftCorner<2, 2>().trace();
   // Both seen from the prediction at their own time: the vehicle's motion in between drops out.
   return (now->offset_m - second_->misfit.offset_m).squaredNorm() > kApart * kApart * variance;
+}
+
+bool Receivers::starting(Stamp now) const {
+  return !odometry_ || toSeconds(now - odometry_->stamp) > kStale_s;
 }
 
 bool Receivers::firstIsSilent(Stamp now) const {
@@ -101,7 +104,9 @@ std::optional<Receivers::Fix> Receivers::second(const Fix& fix) {
       counters_.add("skipped second fix: sooner than a second after the one before");
       return std::nullopt;
     }
-    result.R_m2 *= std::max(1.0, 2.0 * params_.second_gnss_error_time_s / toSeconds(dt));
+    // A filter that starts wants the velocity, which slow errors leave alone.
+    if (!starting(fix.stamp))
+      result.R_m2 *= std::max(1.0, 2.0 * params_.second_gnss_error_time_s / toSeconds(dt));
   }
   second_given_ = fix.stamp;
   return result;

@@ -51,6 +51,8 @@ class Receivers {
 
   /// True when a fix of the first receiver must not be used: it jumped.
   [[nodiscard]] bool jumped(const Fix& first);
+  /// The filter has no answer of late.
+  [[nodiscard]] bool starting(Stamp now) const;
   /// No fix of the first receiver was taken for long enough: the second one is needed.
   [[nodiscard]] bool firstIsSilent(Stamp now) const;
   /// Compares, counts; the fix with the covariance to be used when the second receiver is needed.
