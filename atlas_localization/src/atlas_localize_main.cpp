@@ -22,6 +22,8 @@ int main(int argc, char** argv) {
       ->expected(3);
   app.add_option("--config", options.config, "YAML file with a section localization");
   app.add_option("--filter", options.filter, "eskf or kalman_1d (default: the configuration's, else eskf)");
+  app.add_flag("--covariances", options.covariances,
+               "also trajectory_covariance.csv and smoothed_covariance.csv: velocities and covariances");
   CLI11_PARSE(app, argc, argv);
   if (!lever_arm.empty()) options.lever_arm_m = Eigen::Vector3d(lever_arm[0], lever_arm[1], lever_arm[2]);
   try {

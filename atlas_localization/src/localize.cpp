@@ -83,20 +83,58 @@ void feed(atlas::LocalizationStage& stage, ImuCsv& imu_csv, GnssCsv& gnss_csv) {
   for (const auto input : {Stage::kGnssFix, Stage::kGnssHeading, Stage::kImu}) stage.finish(input);
 }
 
+/// The files of a run; what is not committed leaves no trace.
+class Outputs {
+ public:
+  Outputs(const LocalizeOptions& options, bool smooths)
+      : folder_(options.out),
+        trajectory_(folder_ / "trajectory.tum"),
+        innovations_(folder_ / "innovations.csv") {
+    innovations_.write("stamp_ns,source,y0,y1,y2,sigma0,sigma1,sigma2,mahalanobis_sq,rows,used\n");
+    if (smooths) smoothed_.emplace(folder_ / "smoothed.tum");
+    if (!options.covariances) return;
+    covariance_.emplace(folder_ / "trajectory_covariance.csv").write(atlas::covarianceTitle());
+    if (smooths)
+      smoothed_covariance_.emplace(folder_ / "smoothed_covariance.csv").write(atlas::covarianceTitle());
+  }
+  void filtered(const atlas::Odometry& odometry) {
+    trajectory_.write(tumLine(odometry));
+    if (covariance_) covariance_->write(covarianceLine(odometry));
+  }
+  void innovation(const atlas::InnovationRecord& record) { innovations_.write(lineOf(record)); }
+  void smoothed(const atlas::Odometry& odometry) {
+    smoothed_->write(tumLine(odometry));
+    if (smoothed_covariance_) smoothed_covariance_->write(covarianceLine(odometry));
+  }
+  void commit(const atlas::Geodetic& anchor) {
+    const nlohmann::ordered_json json = {{"latitude", anchor.latitude_deg},
+                                         {"longitude", anchor.longitude_deg},
+                                         {"altitude", anchor.altitude_m}};
+    atlas::writeFile(folder_ / "anchor.json", json.dump(1) + "\n");
+    trajectory_.commit();
+    innovations_.commit();
+    for (auto* file : {&smoothed_, &covariance_, &smoothed_covariance_})
+      if (*file) (*file)->commit();
+  }
+
+ private:
+  std::filesystem::path folder_;
+  atlas::OutputFile trajectory_, innovations_;
+  std::optional<atlas::OutputFile> smoothed_, covariance_, smoothed_covariance_;
+};
+
 }  // namespace
 
 LocalizeSummary localize(const LocalizeOptions& options) {
   const atlas::LocalizationParams params = paramsOf(options);
   ImuCsv imu(options.imu);
   GnssCsv gnss(options.gnss);
-  atlas::OutputFile trajectory(options.out / "trajectory.tum"), smoothed(options.out / "smoothed.tum");
-  atlas::OutputFile innovations(options.out / "innovations.csv");
-  innovations.write("stamp_ns,source,y0,y1,y2,sigma0,sigma1,sigma2,mahalanobis_sq,rows,used\n");
+  const bool smooths = params.filter == "eskf";
+  Outputs outputs(options, smooths);
 
   atlas::LocalizationStage stage(params);
   atlas::eskf::History history;
   LocalizeSummary summary;
-  const bool smooths = params.filter == "eskf";
   if (smooths) stage.record(&history);
   atlas::StaticTransforms antenna;
   antenna.transforms.push_back(
@@ -105,23 +143,17 @@ LocalizeSummary localize(const LocalizeOptions& options) {
   std::optional<atlas::Anchor> anchor;
   stage.on_anchor = [&](const atlas::Anchor& first) { anchor = first; };
   stage.on_odometry = [&](const atlas::Odometry& odometry) {
-    trajectory.write(tumLine(odometry));
+    outputs.filtered(odometry);
     ++summary.poses;
   };
-  stage.on_innovation = [&](const atlas::InnovationRecord& record) { innovations.write(lineOf(record)); };
+  stage.on_innovation = [&](const atlas::InnovationRecord& record) { outputs.innovation(record); };
   feed(stage, imu, gnss);
 
   imu.checkUnits();
   if (!anchor) throw std::runtime_error(options.gnss.string() + ": no usable row");
   history.smooth();
-  for (std::size_t i = 0; i < history.size(); ++i) smoothed.write(tumLine(history.odometry(i)));
-  const nlohmann::ordered_json json = {{"latitude", anchor->position.latitude_deg},
-                                       {"longitude", anchor->position.longitude_deg},
-                                       {"altitude", anchor->position.altitude_m}};
-  atlas::writeFile(options.out / "anchor.json", json.dump(1) + "\n");
-  trajectory.commit();
-  innovations.commit();
-  if (smooths) smoothed.commit();
+  for (std::size_t i = 0; i < history.size(); ++i) outputs.smoothed(history.odometry(i));
+  outputs.commit(anchor->position);
 
   describe(imu.rows(), summary.lines);
   describe(gnss.rows(), summary.lines);

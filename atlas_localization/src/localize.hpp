@@ -14,8 +14,9 @@ namespace atlas_localization {
 struct LocalizeOptions {
   std::filesystem::path imu, gnss, out;
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< antenna in the imu frame
-  std::string config;  ///< YAML with a section "localization"; "" = defaults
-  std::string filter;  ///< overrides the configuration's; "" = not
+  std::string config;        ///< YAML with a section "localization"; "" = defaults
+  std::string filter;        ///< overrides the configuration's; "" = not
+  bool covariances = false;  ///< also trajectory_covariance.csv and smoothed_covariance.csv
 };
 
 /// What was read, used and written, as lines for the user.

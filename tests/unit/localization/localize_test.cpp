@@ -71,6 +71,31 @@ TEST(Localize, WritesTheFourFiles) {
   EXPECT_GT(linesOf(files.options.out / "innovations.csv").size(), 300u);
 }
 
+TEST(Localize, CovariancesAreWrittenWhenAskedFor) {
+  Files files = writeDrive("localize_covariances");
+  localize(files.options);
+  EXPECT_FALSE(std::filesystem::exists(files.options.out / "trajectory_covariance.csv"));
+  files.options.covariances = true;
+  const LocalizeSummary summary = localize(files.options);
+  const auto filtered = linesOf(files.options.out / "trajectory_covariance.csv");
+  const auto smoothed = linesOf(files.options.out / "smoothed_covariance.csv");
+  ASSERT_EQ(filtered.size(), summary.poses + 1);  // the title
+  ASSERT_EQ(smoothed.size(), summary.poses + 1);
+  const auto field = [](const std::string& line, int index) {
+    std::istringstream stream(line);
+    std::string value;
+    for (int i = 0; i <= index; ++i) std::getline(stream, value, ',');
+    return std::stod(value);
+  };
+  const std::string& before = filtered[summary.poses / 2];
+  const std::string& after = smoothed[summary.poses / 2];
+  EXPECT_EQ(field(before, 0), field(after, 0));
+  for (const int variance : {4, 7, 9, 10, 13, 15, 16, 19, 21}) {  // the nine diagonals
+    EXPECT_GT(field(before, variance), 0.0) << variance;
+    EXPECT_LT(field(after, variance), field(before, variance)) << variance << ": the smoother knows more";
+  }
+}
+
 TEST(Localize, EmptyGnssIsRefusedAndNothingIsWritten) {
   Files files = writeDrive("localize_empty");
   std::ofstream(files.options.gnss) << "stamp_ns,lat,lon,alt,sd_e,sd_n,sd_u\n";

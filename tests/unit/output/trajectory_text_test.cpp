@@ -63,6 +63,22 @@ TEST(TrajectoryText, csvHasAColumnForEachTitle) {
   EXPECT_NE(line.find(",0.0035\n"), std::string::npos) << "cov_rz_rz is the last element";
 }
 
+TEST(TrajectoryText, covarianceLineHasVelocityAndThreeUpperTriangles) {
+  Odometry o = somewhere();
+  o.velocity_imu_mps = {9.5, 0.25, -0.125};
+  for (std::size_t i = 0; i < 36; ++i) {
+    o.pose_covariance[i] = static_cast<double>(i);
+    o.twist_covariance[i] = 100.0 + static_cast<double>(i);
+  }
+  EXPECT_EQ(covarianceLine(o),
+            "1568805602123456789,9.500000000,0.250000000,-0.125000000,"
+            "0,1,2,7,8,14,100,101,102,107,108,114,21,22,23,28,29,35\n");
+  EXPECT_EQ(covarianceTitle(),
+            "stamp_ns,vx,vy,vz,cov_p_xx,cov_p_xy,cov_p_xz,cov_p_yy,cov_p_yz,cov_p_zz,"
+            "cov_v_xx,cov_v_xy,cov_v_xz,cov_v_yy,cov_v_yz,cov_v_zz,"
+            "cov_r_xx,cov_r_xy,cov_r_xz,cov_r_yy,cov_r_yz,cov_r_zz\n");
+}
+
 TEST(TrajectoryText, stampsAreExactToTheNanosecond) {
   EXPECT_EQ(seconds(0), "0.000000000");
   EXPECT_EQ(seconds(1), "0.000000001");

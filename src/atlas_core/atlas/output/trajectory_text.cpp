@@ -2,6 +2,7 @@
 #include "atlas/output/trajectory_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -110,6 +111,36 @@ std::string csvLine(const Odometry& odometry) {
       appendGeneral(line, odometry.pose_covariance[6 * row + column]);
     }
   }
+  line.push_back('\n');
+  return line;
+}
+
+std::string covarianceTitle() {
+  std::string title = "stamp_ns,vx,vy,vz";
+  for (const char* const part : {"p", "v", "r"}) {
+    for (const char* const element : {"xx", "xy", "xz", "yy", "yz", "zz"})
+      title += std::string(",cov_") + part + "_" + element;
+  }
+  return title + "\n";
+}
+
+std::string covarianceLine(const Odometry& odometry) {
+  std::string line = std::to_string(odometry.stamp);
+  for (const double value : odometry.velocity_imu_mps) {
+    line.push_back(',');
+    appendFixed(line, value, kMetreDecimals);
+  }
+  const auto appendBlock = [&line](const std::array<double, 36>& covariance, std::size_t first) {
+    for (std::size_t row = first; row < first + 3; ++row) {
+      for (std::size_t column = row; column < first + 3; ++column) {
+        line.push_back(',');
+        appendGeneral(line, covariance[6 * row + column]);
+      }
+    }
+  };
+  appendBlock(odometry.pose_covariance, 0);
+  appendBlock(odometry.twist_covariance, 0);
+  appendBlock(odometry.pose_covariance, 3);
   line.push_back('\n');
   return line;
 }

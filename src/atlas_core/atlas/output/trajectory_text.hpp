@@ -23,5 +23,10 @@ void appendStampSeconds(std::string& text, Stamp stamp);
 /// csvTitle().
 [[nodiscard]] std::string csvLine(const Odometry& odometry);
 [[nodiscard]] std::string csvTitle();
+/// What an odometry says about its own errors: stamp_ns, velocity (imu frame), then the upper triangles of
+/// the covariances of position (map), velocity (imu frame) and attitude (small rotation about the axes of
+/// map). m, s, rad. See covarianceTitle().
+[[nodiscard]] std::string covarianceLine(const Odometry& odometry);
+[[nodiscard]] std::string covarianceTitle();
 
 }  // namespace atlas
