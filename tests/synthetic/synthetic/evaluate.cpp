@@ -58,6 +58,7 @@ Evaluation evaluateRun(const RunFolders& folders) {
     if (fs::exists(folders.out / "trajectory" / "smoothed.tum"))
       evaluateTrajectory(folders, "smoothed", T_truth_run, evaluation);
     evaluatePoints(folders, T_truth_run, evaluation);
+    evaluateObstacles(folders, T_truth_run, evaluation);
   } else {
     evaluation.skip("trajectory and points: no trajectory/anchor.json");
   }

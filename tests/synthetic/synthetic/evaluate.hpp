@@ -39,6 +39,8 @@ void evaluateTrajectory(const RunFolders& folders, const std::string& name, cons
                         Evaluation& evaluation);
 /// Points of out/deskewed: error in the map, and what is left of it after the best rigid motion of each scan.
 void evaluatePoints(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation);
+/// Boxes of out/obstacles against what the returns belong to: found objects, wrong boxes, overlap.
+void evaluateObstacles(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation);
 void evaluateDepth(const RunFolders& folders, Evaluation& evaluation);
 /// Distances of out/frustums against the nearest visible point of the true object that the detection shows.
 void evaluateFrustums(const RunFolders& folders, Evaluation& evaluation);
