@@ -167,7 +167,7 @@ TEST(Deskew, RefusesParametersByName) {
     return "";
   };
   DeskewParams params;
-  params.batches_per_sweep = 0;
+  params.batches_per_sweep = -1;
   EXPECT_NE(message(params).find("batches_per_sweep"), std::string::npos);
   params = {};
   params.max_range_m = 0.5;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "atlas/lidar/per_point.hpp"
 #include "atlas/lidar/range_gate.hpp"
 
 namespace atlas {
@@ -30,8 +31,8 @@ std::vector<std::string> inputNames(const DeskewParams& params) {
 
 void validate(const DeskewParams& params) {
   if (params.lidars.empty()) throw std::invalid_argument("deskew: lidars must name at least one lidar");
-  if (params.batches_per_sweep < 1 || params.batches_per_sweep > std::numeric_limits<std::uint16_t>::max()) {
-    refuse("batches_per_sweep must lie in 1..65535", params.batches_per_sweep);
+  if (params.batches_per_sweep < 0 || params.batches_per_sweep > std::numeric_limits<std::uint16_t>::max()) {
+    refuse("batches_per_sweep must lie in 0..65535", params.batches_per_sweep);
   }
   if (!(params.min_range_m >= 0.0)) refuse("min_range_m must not be negative", params.min_range_m);
   if (!(params.max_range_m > params.min_range_m))
@@ -39,11 +40,23 @@ void validate(const DeskewParams& params) {
   if (!(params.max_pose_gap_s > 0.0 && params.max_pose_gap_s <= 10.0)) {
     refuse("max_pose_gap_s must lie in (0, 10]", params.max_pose_gap_s);
   }
+  for (const int ring : params.dead_rings) {
+    if (ring < 0 || ring > std::numeric_limits<std::uint16_t>::max())
+      refuse("dead_rings must lie in 0..65535", ring);
+  }
+  try {
+    (void)scanStampNamed(params.scan_stamp);
+    (void)vehicleBoxFrom(params.vehicle_box_m);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("deskew: ") + error.what());
+  }
 }
 
 DeskewStage::DeskewStage(const DeskewParams& params)
     : Stage("deskew", inputNames(params)),
       params_(params),
+      scan_stamp_(scanStampNamed(params.scan_stamp)),
+      filter_{vehicleBoxFrom(params.vehicle_box_m), params.dead_rings, params.drop_duplicates},
       max_pose_gap_(fromSeconds(params.max_pose_gap_s)),
       trajectory_(max_pose_gap_) {}
 
@@ -58,7 +71,8 @@ void DeskewStage::push(const Odometry& odometry) {
 void DeskewStage::push(std::size_t lidar, const SweepPtr& sweep) {
   enqueue(kFirstLidar + lidar, sweep->stamp, [this, lidar, sweep] {
     counters_.add("sweeps");
-    waiting_.push_back({lidar, sweep, spanOf(*sweep), rig_.T_imu(sweep->frame)});
+    const SweepPtr timed = withStampAt(sweep, scan_stamp_);
+    waiting_.push_back({lidar, timed, spanOf(*timed), rig_.T_imu(timed->frame)});
     answerReady(sweep->stamp - 1);
   });
 }
@@ -97,17 +111,29 @@ void DeskewStage::answerReady(Stamp odometry_known) {
   }
 }
 
-void DeskewStage::answer(const Waiting& waiting) {
+SweepPtr DeskewStage::filtered(const Waiting& waiting) {
   const GatedSweep gated = gateByRange(waiting.sweep, params_.min_range_m, params_.max_range_m);
   counters_.add("points outside the range gate", gated.gated);
+  if (filter_.doesNothing() || !waiting.T_imu_lidar) return gated.sweep;
+  const FilteredSweep result = filterPoints(gated.sweep, filter_, *waiting.T_imu_lidar);
+  counters_.add("points on the vehicle", result.on_vehicle);
+  counters_.add("points of dead rings", result.of_dead_rings);
+  counters_.add("duplicate points", result.duplicates);
+  return result.sweep;
+}
+
+void DeskewStage::answer(const Waiting& waiting) {
+  const SweepPtr points = filtered(waiting);
   Outcome<BatchedSweep> batched = Reason::kEmpty;
   if (!waiting.span) {
     batched = waiting.span.reason();
   } else if (!waiting.T_imu_lidar) {
     batched = waiting.T_imu_lidar.reason();
+  } else if (params_.batches_per_sweep == 0) {
+    batched = deskewPerPoint(points, *waiting.span, trajectory_, *waiting.T_imu_lidar);
   } else {
-    batched = cutIntoBatches(gated.sweep, *waiting.span, params_.batches_per_sweep, trajectory_,
-                             *waiting.T_imu_lidar);
+    batched =
+        cutIntoBatches(points, *waiting.span, params_.batches_per_sweep, trajectory_, *waiting.T_imu_lidar);
   }
   auto result = std::make_shared<BatchedSweep>();
   if (batched) {
@@ -116,7 +142,7 @@ void DeskewStage::answer(const Waiting& waiting) {
     counters_.skip("sweep of " + params_.lidars[waiting.lidar], batched.reason());
     result->stamp = waiting.sweep->stamp;
     result->frame = waiting.sweep->frame;
-    result->sweep = gated.sweep;
+    result->sweep = points;
   }
   if (on_batches) on_batches(waiting.lidar, result);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stage: sweeps of all lidars and odometry in, sweeps cut into batches with one pose each out (paper IV-B,
-// steps 1-3). A sweep waits until the odometry has passed its last point: no pose is extrapolated and none is
-// stale.
+// steps 1-3), or moved point by point into one batch. A sweep waits until the odometry has passed its last
+// point: no pose is extrapolated and none is stale.
 #pragma once
 
 #include <deque>
@@ -14,16 +14,22 @@
 #include "atlas/base/trajectory.hpp"
 #include "atlas/calibration/rig.hpp"
 #include "atlas/lidar/batching.hpp"
+#include "atlas/lidar/point_filter.hpp"
+#include "atlas/lidar/point_time.hpp"
 #include "atlas/sensor/products.hpp"
 
 namespace atlas {
 
 struct DeskewParams {
   std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
-  int batches_per_sweep = 100;  ///< N of the paper, 1..65535
+  int batches_per_sweep = 100;  ///< N of the paper, 1..65535; 0 = every point by the pose at its own time
   double min_range_m = 1.0;     ///< nearer returns are the vehicle itself: set to NaN
   double max_range_m = 120.0;   ///< farther returns are set to NaN
   double max_pose_gap_s = 0.5;  ///< poses farther apart are not interpolated
+  std::string scan_stamp = "recorded";  ///< what a sweep's stamp marks: see ScanStamp
+  std::vector<double> vehicle_box_m;    ///< own body in the vehicle's frame, as vehicleBoxFrom takes it
+  std::vector<int> dead_rings;          ///< broken beams, left out
+  bool drop_duplicates = false;         ///< for sensors that report the same return twice
 };
 /// Throws std::invalid_argument that names the field and its value.
 void validate(const DeskewParams& params);
@@ -60,8 +66,12 @@ class DeskewStage : public Stage {
   void answerReady(Stamp odometry_known);
   [[nodiscard]] bool isReady(const Waiting& waiting, Stamp odometry_known) const;
   void answer(const Waiting& waiting);
+  /// The points that are believed; counts the others.
+  SweepPtr filtered(const Waiting& waiting);
 
   DeskewParams params_;
+  ScanStamp scan_stamp_;
+  PointFilter filter_;
   Duration max_pose_gap_;
   Rig rig_;
   Trajectory trajectory_;
