@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "atlas/lidar/point_time.hpp"
 #include "atlas_ros/conversions.hpp"
 
 namespace atlas_ros {
@@ -79,12 +80,8 @@ double read(const PointField& f, const std::uint8_t* point) {
   }
 }
 
-/// Seconds relative to the stamp, by the conventions of the drivers that use each name.
-double relativeTime(const PointField& f, const std::uint8_t* point, double stamp_s) {
-  const double raw = read(f, point);
-  const bool integer_ns = f.datatype == PointField::UINT32 || f.datatype == PointField::INT32;
-  if (integer_ns) return raw * 1e-9;
-  return raw > 1e6 ? raw - stamp_s : raw;
+bool isWhole(const PointField& f) {
+  return f.datatype != PointField::FLOAT32 && f.datatype != PointField::FLOAT64;
 }
 
 bool isOurLayout(const sensor_msgs::PointCloud2& msg) {
@@ -98,33 +95,38 @@ bool isOurLayout(const sensor_msgs::PointCloud2& msg) {
   return true;
 }
 
-constexpr double kAssumedSweepDuration = 0.1;  // s, of clouds that carry no time
+/// Where the point with index i begins.
+const std::uint8_t* pointAt(const sensor_msgs::PointCloud2& msg, std::size_t i) {
+  return msg.data.data() + i / msg.width * msg.row_step + i % msg.width * msg.point_step;
+}
+
+void readTimes(const sensor_msgs::PointCloud2& msg, atlas::Sweep& sweep) {
+  const PointField* time = find(msg, {"time", "t", "timestamp", "offset_time", "time_stamp"});
+  if (time == nullptr) {
+    atlas::rebuildTimes(sweep.points, atlas::kAssumedSweep_s);
+    return;
+  }
+  std::vector<double> raw(sweep.points.size());
+  for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = read(*time, pointAt(msg, i));
+  const std::vector<float> times = atlas::relativeTimes(raw, isWhole(*time), sweep.stamp);
+  for (std::size_t i = 0; i < raw.size(); ++i) sweep.points[i].time = times[i];
+}
 
 void readForeign(const sensor_msgs::PointCloud2& msg, const PointField& x, const PointField& y,
                  const PointField& z, atlas::Sweep& sweep) {
   const PointField* intensity = find(msg, {"intensity", "reflectivity", "i"});
   const PointField* ring = find(msg, {"ring", "channel", "line"});
-  const PointField* time = find(msg, {"time", "t", "timestamp", "offset_time", "time_stamp"});
-  const double stamp_s = msg.header.stamp.toSec();
-  std::size_t i = 0;
-  for (std::uint32_t row = 0; row < msg.height; ++row) {
-    for (std::uint32_t column = 0; column < msg.width; ++column, ++i) {
-      const std::uint8_t* data = msg.data.data() + static_cast<std::size_t>(row) * msg.row_step +
-                                 static_cast<std::size_t>(column) * msg.point_step;
-      atlas::LidarPoint& p = sweep.points[i];
-      p.x = static_cast<float>(read(x, data));
-      p.y = static_cast<float>(read(y, data));
-      p.z = static_cast<float>(read(z, data));
-      if (p.x == 0 && p.y == 0 && p.z == 0) p.x = p.y = p.z = std::numeric_limits<float>::quiet_NaN();
-      if (intensity != nullptr) p.intensity = static_cast<float>(read(*intensity, data));
-      if (ring != nullptr) p.ring = static_cast<std::uint16_t>(read(*ring, data));
-      p.time = static_cast<float>(
-          time != nullptr
-              ? relativeTime(*time, data, stamp_s)
-              : kAssumedSweepDuration *
-                    (static_cast<double>(i + 1) / static_cast<double>(sweep.points.size()) - 1.0));
-    }
+  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+    const std::uint8_t* data = pointAt(msg, i);
+    atlas::LidarPoint& p = sweep.points[i];
+    p.x = static_cast<float>(read(x, data));
+    p.y = static_cast<float>(read(y, data));
+    p.z = static_cast<float>(read(z, data));
+    if (p.x == 0 && p.y == 0 && p.z == 0) p.x = p.y = p.z = std::numeric_limits<float>::quiet_NaN();
+    if (intensity != nullptr) p.intensity = static_cast<float>(read(*intensity, data));
+    if (ring != nullptr) p.ring = static_cast<std::uint16_t>(read(*ring, data));
   }
+  readTimes(msg, sweep);
 }
 
 }  // namespace

@@ -17,10 +17,10 @@ sensor_msgs::PointCloud2 toCloud(const std::vector<atlas::LidarPoint>& points, a
                                  const std::string& frame);
 sensor_msgs::PointCloud2 toMsg(const atlas::Sweep& sweep);
 
-/// x, y, z are required (FLOAT32 or FLOAT64), intensity, ring and time optional. Time fields understood:
-/// `time` (float s), `t` and `offset_time` (uint32 ns), `timestamp` (float64 s, absolute when larger than
-/// 1e6, else relative). Without one, time runs linearly in order over the 0.1 s before the stamp. kBadLayout
-/// for big-endian data, missing or short fields.
+/// x, y, z are required (any type), intensity, ring and time optional; other fields are passed over. Time
+/// fields understood: `time`, `t`, `timestamp`, `offset_time`, `time_stamp` of any type and unit
+/// (atlas::relativeTimes); without one, time is rebuilt from azimuth or order (atlas::rebuildTimes).
+/// kBadLayout for big-endian data, missing or short fields.
 atlas::Outcome<atlas::SweepPtr> fromMsg(const sensor_msgs::PointCloud2& msg);
 
 }  // namespace atlas_ros

@@ -95,6 +95,38 @@ TEST(PointTime, WithoutRotationTheOrderTells) {
   EXPECT_EQ(rebuildTimes(none, 0.1), TimeOrigin::kOrder);
 }
 
+TEST(PointTime, UnitsOfDriversAreToldApart) {
+  constexpr Stamp kStamp = 1'568'186'745'408'734'467;
+  constexpr Stamp kSimulated = 50 * kSecond;
+  struct Case {
+    std::vector<double> raw;
+    bool whole;
+    Stamp stamp;
+    double tolerance_s;
+  };
+  const double s = toSeconds(kStamp);
+  // every one of them says 0, 20 and 99.9 ms after the stamp
+  const std::vector<Case> cases = {
+      {{0, 20e6, 99.9e6}, true, kStamp, 1e-8},                             // Ouster t, Livox offset_time: ns
+      {{0, 0.02, 0.0999}, false, kStamp, 1e-8},                            // Velodyne time: s
+      {{0, 20, 99.9}, false, kStamp, 1e-8},                                // ms
+      {{0, 20e3, 99.9e3}, false, kStamp, 1e-8},                            // us
+      {{0, 20e6, 99.9e6}, false, kStamp, 1e-8},                            // ns in a float field
+      {{s, s + 0.02, s + 0.0999}, false, kStamp, 1e-6},                    // Hesai, RoboSense: Unix s
+      {{1e3 * s, 1e3 * s + 20, 1e3 * s + 99.9}, false, kStamp, 1e-6},      // Unix ms
+      {{1e9 * s, 1e9 * s + 20e6, 1e9 * s + 99.9e6}, false, kStamp, 1e-6},  // Livox timestamp: Unix ns
+      {{50, 50.02, 50.0999}, false, kSimulated, 1e-8},                     // simulated time, s
+      {{0, 0.02, 0.0999}, false, kSimulated, 1e-8},
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const std::vector<float> times = relativeTimes(cases[i].raw, cases[i].whole, cases[i].stamp);
+    EXPECT_NEAR(static_cast<double>(times[0]), 0.0, cases[i].tolerance_s) << i;
+    EXPECT_NEAR(static_cast<double>(times[1]), 0.02, cases[i].tolerance_s) << i;
+    EXPECT_NEAR(static_cast<double>(times[2]), 0.0999, cases[i].tolerance_s) << i;
+  }
+  EXPECT_TRUE(std::isnan(relativeTimes({0.0, NAN}, false, kStamp)[1]));
+}
+
 TEST(PointTime, StampIsMovedToEitherEnd) {
   auto sweep = std::make_shared<Sweep>();
   for (const float time : {-0.1F, kNan, -0.05F, 0.0F}) sweep->points.push_back({1, 0, 0, 0, time, 0, 0});

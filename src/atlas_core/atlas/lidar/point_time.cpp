@@ -11,6 +11,27 @@ namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
 
+struct TimeUnit {
+  double seconds = 1.0;
+  bool absolute = false;
+};
+
+TimeUnit unitOf(const std::vector<double>& raw, Stamp stamp) {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  double smallest = kMax, largest = -kMax;
+  for (const double value : raw) {
+    if (!std::isfinite(value)) continue;
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+  }
+  if (smallest > largest) return {};
+  const double stamp_s = toSeconds(stamp);
+  if (stamp_s > 2.0 && smallest >= stamp_s - 1.0 && largest <= stamp_s + 1.0) return {1.0, true};
+  const double size = std::max(std::abs(smallest), std::abs(largest));
+  if (size > 1e9) return {size < 1e11 ? 1.0 : size < 1e14 ? 1e-3 : size < 1e17 ? 1e-6 : 1e-9, true};
+  return {size <= 1.0 ? 1.0 : size <= 1e3 ? 1e-3 : size <= 1e6 ? 1e-6 : 1e-9, false};
+}
+
 bool isReturn(const LidarPoint& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && (p.x != 0.0F || p.y != 0.0F);
 }
@@ -58,6 +79,15 @@ void timesByLaser(std::vector<LidarPoint>& points, double turn_s) {
 }
 
 }  // namespace
+
+std::vector<float> relativeTimes(const std::vector<double>& raw, bool whole_numbers, Stamp stamp) {
+  const TimeUnit unit = whole_numbers ? TimeUnit{1e-9, false} : unitOf(raw, stamp);
+  const double zero = unit.absolute ? static_cast<double>(stamp) * 1e-9 / unit.seconds : 0.0;
+  std::vector<float> result;
+  result.reserve(raw.size());
+  for (const double value : raw) result.push_back(static_cast<float>((value - zero) * unit.seconds));
+  return result;
+}
 
 const char* toString(TimeOrigin origin) {
   switch (origin) {

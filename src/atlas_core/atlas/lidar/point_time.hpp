@@ -14,6 +14,12 @@ namespace atlas {
 /// How long a sweep lasts that does not say so: 10 Hz, the usual rate.
 constexpr double kAssumedSweep_s = 0.1;
 
+/// A driver's raw time field as seconds relative to the stamp. Whole numbers count ns. Of floating types the
+/// unit follows from the largest: all within 1 s of the stamp or beyond 1e9 is absolute (Unix time in s, ms,
+/// us or ns), up to 1 are s, 1e3 ms, 1e6 us, 1e9 ns. Values that are not finite become NaN.
+[[nodiscard]] std::vector<float> relativeTimes(const std::vector<double>& raw, bool whole_numbers,
+                                               Stamp stamp);
+
 /// What the times of a sweep without any were rebuilt from.
 enum class TimeOrigin {
   kAzimuth,  ///< column by column: the azimuth runs once around
