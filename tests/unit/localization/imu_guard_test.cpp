@@ -75,6 +75,20 @@ TEST(ImuGuard, RangeIsLearnedFromRepeatedExtremes) {
   EXPECT_EQ(counters.get("skipped imu: accelerometer saturated"), 3U);
 }
 
+TEST(ImuGuard, DoubtGrowsWithTheLengthOfTheClipping) {
+  auto samples = noisy(200);
+  for (const std::size_t i : {100U, 101U, 102U}) samples[i].linear_acceleration_mps2.z() = 40.0;
+  Counters counters;
+  ImuGuard guard({40.0, 0.0, 0.2}, counters);
+  double sum = 0.0;
+  for (const ImuSample& s : samples) {
+    guard.usable(s);
+    sum += guard.doubt().velocity;
+    EXPECT_EQ(guard.doubt().turn, 0.0);
+  }
+  EXPECT_NEAR(std::sqrt(sum), 3 * 0.01 * 40.0, 1e-9);  // the three periods are wrong in the same direction
+}
+
 TEST(ImuGuard, ALargerValueShowsThatItWasNoRange) {
   auto samples = noisy(400);
   for (const std::size_t i : {100U, 101U, 102U}) samples[i].linear_acceleration_mps2.z() = 25.0;

@@ -110,6 +110,12 @@ std::optional<Odometry> EskfFilter::propagate(const ImuSample& sample) {
   return odometry(std::max(toSeconds(sample.stamp - before), period_s_));
 }
 
+void EskfFilter::distrust(double velocity_variance, double turn_variance) {
+  if (!running_) return;
+  P_.diagonal().segment<3>(eskf::kV).array() += velocity_variance;
+  P_.diagonal().segment<3>(eskf::kTheta).array() += turn_variance;
+}
+
 void EskfFilter::finish() {
   skipPendingBefore(kEndOfTime, &EskfFilter::fix_after_, &EskfFilter::heading_after_);
 }

@@ -32,6 +32,7 @@ class EskfFilter : public PositioningFilter {
   void update(Stamp stamp, const Eigen::Vector3d& p_map_antenna, const Eigen::Matrix3d& R_m2) override;
   void updateHeading(Stamp stamp, double yaw_rad, double variance_rad2) override;
   std::optional<Odometry> propagate(const ImuSample& sample) override;
+  void distrust(double velocity_variance, double turn_variance) override;
   void finish() override;
   [[nodiscard]] std::optional<ImuBias> imuBias() const override;
   bool record(eskf::History* history) override;

@@ -13,6 +13,7 @@ constexpr double kLeastForceRange_mps2 = 18.6, kLeastRateRange_radps = 1.7;  // 
 constexpr double kMostForce_mps2 = 200.0, kMostRate_radps = 40.0;
 constexpr double kNearRange = 0.9999;  // values are recorded with five digits or more
 constexpr int kRepeatsAtRange = 3;
+constexpr double kUnseenAcceleration_mps2 = 1.5, kUnseenRate_radps = 0.2;  // what a vehicle may do unseen
 constexpr int kLeastVaried = 100, kLeastSame = 10;
 constexpr double kGapPeriods = 5.0, kGapLeast_s = 0.02;
 constexpr double kPeriodGain = 0.05;
@@ -52,6 +53,7 @@ ImuGuard::ImuGuard(const ImuGuardParams& params, Counters& counters) : params_(p
 }
 
 bool ImuGuard::usable(const ImuSample& sample) {
+  doubt_ = {};
   if (before_ && sample.stamp <= before_->stamp) return true;  // the filter counts it
   if (largestOf(sample.linear_acceleration_mps2) > kMostForce_mps2) {
     counters_.add("skipped imu: acceleration beyond 200 m/s^2");
@@ -64,30 +66,48 @@ bool ImuGuard::usable(const ImuSample& sample) {
   }
   watchGap(sample);
   const ImuSample before = before_.value_or(sample);
-  const bool is_frozen = before_ && frozen(sample);
+  const bool was_frozen = is_frozen_;
+  is_frozen_ = before_ && frozen(sample);
+  bool usable = !is_frozen_;
   // A signal that stands still altogether is frozen, not saturated.
-  const bool varies = same_ == 0 && before_;
-  const bool force =
-      varies && accel_.saturated(sample.linear_acceleration_mps2, before.linear_acceleration_mps2);
-  const bool rate = varies && gyro_.saturated(sample.angular_velocity_radps, before.angular_velocity_radps);
+  if (same_ == 0 && before_) judgeRange(sample, before, usable);
   before_ = sample;
-  if (is_frozen) counters_.add("skipped imu: frozen, the same values again and again");
-  if (force) counters_.add("skipped imu: accelerometer saturated");
-  if (rate) counters_.add("skipped imu: gyroscope saturated");
-  return !is_frozen && !force && !rate;
+  if (is_frozen_) counters_.add("skipped imu: frozen, the same values again and again");
+  if (is_frozen_ && !was_frozen) {  // those before were used
+    const double span_s = toSeconds(sample.stamp - same_since_);
+    doubt_ = {std::pow(kUnseenAcceleration_mps2 * span_s, 2), std::pow(kUnseenRate_radps * span_s, 2)};
+  }
+  return usable;
+}
+
+void ImuGuard::judgeRange(const ImuSample& sample, const ImuSample& before, bool& usable) {
+  if (accel_.saturated(sample.linear_acceleration_mps2, before.linear_acceleration_mps2)) {
+    counters_.add("skipped imu: accelerometer saturated");
+    doubt_.velocity = accel_.doubt(period_s_);
+    usable = false;
+  }
+  if (gyro_.saturated(sample.angular_velocity_radps, before.angular_velocity_radps)) {
+    counters_.add("skipped imu: gyroscope saturated");
+    doubt_.turn = gyro_.doubt(period_s_);
+    usable = false;
+  }
 }
 
 bool ImuGuard::Group::saturated(const Eigen::Vector3d& now, const Eigen::Vector3d& before) {
   for (int i = 0; i < 3; ++i) repeats[i] = now(i) == before(i) ? repeats[i] + 1 : 1;
   const double size = largestOf(now);
   if (learned && size > range / kNearRange) range = 0.0;  // a larger value: it was no limit
-  if (range > 0.0) return size >= kNearRange * range;
+  if (range > 0.0) {
+    clipped = size >= kNearRange * range ? clipped + 1 : 0;
+    return clipped > 0;
+  }
   largest = std::max(largest, size);
   for (int i = 0; i < 3; ++i) {
     const bool extreme = std::abs(now(i)) >= least && std::abs(now(i)) >= largest;
     if (extreme && repeats[i] >= kRepeatsAtRange) range = std::abs(now(i));
   }
   learned = range > 0.0;
+  clipped = learned ? kRepeatsAtRange : 0;
   return learned;
 }
 

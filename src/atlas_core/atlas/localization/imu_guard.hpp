@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Which samples of an IMU can be believed. A sample that cannot is counted under its reason and left out: the
-// filter then sees a gap and lets its uncertainty grow. Units that are wrong end the run in words.
+// filter then sees a gap and lets its uncertainty grow; where that is not enough (a blow beyond the range, a
+// freeze that was noticed late) the guard says how much the motion is in doubt. Units that are wrong end the
+// run in words.
 //
 //   saturated    a value at the range limit. Without a given range the limit is learned: the largest
 //   magnitude
@@ -13,6 +15,7 @@
 //                degrees (against the IMU's own orientation, or faster than a vehicle turns)
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "atlas/base/counters.hpp"
@@ -30,10 +33,17 @@ void validate(const ImuGuardParams& params);
 
 class ImuGuard {
  public:
+  /// Variances of what nobody measured, per axis.
+  struct Doubt {
+    double velocity = 0.0;  ///< (m/s)^2
+    double turn = 0.0;      ///< rad^2
+  };
   /// `counters` must outlive it.
   ImuGuard(const ImuGuardParams& params, Counters& counters);
   /// False: counted, not to be used. Throws std::runtime_error when the units cannot be right. Finite values.
   bool usable(const ImuSample& sample);
+  /// What the newest sample adds to the doubt in the motion up to it.
+  [[nodiscard]] const Doubt& doubt() const { return doubt_; }
 
  private:
   /// Three axes that share a range.
@@ -43,9 +53,15 @@ class ImuGuard {
     double least = 0.0;  ///< no range ends below
     double largest = 0.0;
     int repeats[3] = {0, 0, 0};  ///< samples in a row with the same value
+    int clipped = 0;             ///< samples in a row
+    /// The k-th clipped sample in a row leaves out about `range` for one more period; sums of the same sign.
+    [[nodiscard]] double doubt(double period_s) const {
+      return (2 * clipped - 1) * std::pow(range * period_s, 2);
+    }
     bool saturated(const Eigen::Vector3d& now, const Eigen::Vector3d& before);
   };
   void watchGap(const ImuSample& sample);
+  void judgeRange(const ImuSample& sample, const ImuSample& before, bool& usable);
   [[nodiscard]] bool frozen(const ImuSample& sample);
   void watchUnits(const ImuSample& sample);
   void judgeUnits(double span_s);
@@ -54,7 +70,9 @@ class ImuGuard {
   Counters& counters_;
   Group accel_, gyro_;
   std::optional<ImuSample> before_;
+  Doubt doubt_;
   double period_s_ = 0.0;
+  bool is_frozen_ = false;
   int varied_ = 0, same_ = 0;
   Stamp same_since_ = 0;
 

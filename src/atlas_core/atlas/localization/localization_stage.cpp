@@ -89,7 +89,10 @@ void LocalizationStage::use(const ImuSample& sample) {
     counters_.skip("imu", Reason::kNotFinite);
     return;
   }
-  if (!guard_.usable(sample)) return;
+  const bool usable = guard_.usable(sample);
+  const ImuGuard::Doubt& doubt = guard_.doubt();
+  if (filter_ && (doubt.velocity > 0.0 || doubt.turn > 0.0)) filter_->distrust(doubt.velocity, doubt.turn);
+  if (!usable) return;
   ImuSample clean = sample;
   if (clean.orientation) {
     const double norm = clean.orientation->norm();

@@ -79,6 +79,9 @@ class PositioningFilter {
   /// Propagates to the sample's stamp; the odometry at that stamp, or nullopt while position, velocity,
   /// attitude or heading is unknown.
   virtual std::optional<Odometry> propagate(const ImuSample& sample) = 0;
+  /// The motion up to the present sample is in doubt: variances per axis of velocity, (m/s)^2, and turn,
+  /// rad^2.
+  virtual void distrust(double /*velocity_variance*/, double /*turn_variance*/) {}
   /// No more samples: counts the fixes and headings that no sample followed.
   virtual void finish() = 0;
 
