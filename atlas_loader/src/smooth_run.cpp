@@ -19,7 +19,7 @@ namespace atlas_loader {
 std::shared_ptr<const atlas::eskf::History> smoothRun(const InputOptions& input,
                                                       const atlas::LocalizationParams& params,
                                                       const std::string& out) {
-  const auto history = std::make_shared<atlas::eskf::History>();
+  const auto history = std::make_shared<atlas::eskf::History>(atlas::SpillParams{out});
   atlas::LocalGraph graph;
   graph.add([&](atlas::LocalGraph::Bus& bus) -> atlas::StageFactory {
     const atlas::StageFactory factory = bindLocalization(bus, params);

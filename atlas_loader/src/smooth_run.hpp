@@ -10,8 +10,9 @@
 
 namespace atlas_loader {
 
-/// Writes OUT/trajectory/smoothed.tum and returns the run for LocalizationParams::smoothed. Throws
-/// std::invalid_argument for a filter without smoother, std::runtime_error when no pose came out.
+/// Writes OUT/trajectory/smoothed.tum (and, while it lives, a temporary file in OUT for a long run) and
+/// returns the run for LocalizationParams::smoothed. Throws std::invalid_argument for a filter without
+/// smoother, std::runtime_error when no pose came out.
 std::shared_ptr<const atlas::eskf::History> smoothRun(const InputOptions& input,
                                                       const atlas::LocalizationParams& params,
                                                       const std::string& out);

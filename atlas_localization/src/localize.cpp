@@ -133,7 +133,7 @@ LocalizeSummary localize(const LocalizeOptions& options) {
   Outputs outputs(options, smooths);
 
   atlas::LocalizationStage stage(params);
-  atlas::eskf::History history;
+  atlas::eskf::History history({options.out});  // what exceeds the memory goes beside the outputs
   LocalizeSummary summary;
   if (smooths) stage.record(&history);
   atlas::StaticTransforms antenna;

@@ -27,6 +27,7 @@ Files writeDrive(const std::string& name) {
   files.truth = drive(d);
   const Recording recording = record(files.truth, d, realisticErrors(random), random);
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / name;
+  std::filesystem::remove_all(folder);  // of an earlier run
   std::filesystem::create_directories(folder);
   std::ofstream imu(folder / "imu.csv"), gnss(folder / "gnss.csv");
   imu.precision(12);

@@ -14,8 +14,7 @@
 // Between two corrections the error is interpolated linearly: they are fractions of a second apart.
 #pragma once
 
-#include <deque>
-
+#include "atlas/base/spilled_list.hpp"
 #include "atlas/localization/eskf_measurement.hpp"
 #include "atlas/sensor/products.hpp"
 
@@ -23,6 +22,10 @@ namespace atlas::eskf {
 
 class History {
  public:
+  /// Where what does not fit into memory is kept; the default keeps all in memory. When the system refuses, a
+  /// function that records or smooths throws std::runtime_error with folder and cause.
+  explicit History(const SpillParams& spill = {}) : nodes_(spill), smoothed_(spill), samples_(spill) {}
+
   /// The filter begins (anew): nothing before is connected with what follows.
   void begin(Stamp stamp, const Matrix& P);
   void moved(const Transition& transition) {
@@ -38,11 +41,13 @@ class History {
     node.PHt.leftCols<M>() = innovation.PHt;
     node.S_inverse.topLeftCorner<M, M>() = innovation.S_inverse;
     node.y.head<M>() = z.y;
-    node.step = error.head<kMoving>();
+    Smoothed& smoothed = smoothed_.change(smoothed_.size() - 1);
+    smoothed.connected = true;
+    smoothed.step = error.head<kMoving>();
   }
   /// The state at an IMU sample, after all corrections up to it.
   void sample(Stamp stamp, const State& state, const Eigen::Vector3d& rate_radps) {
-    samples_.push_back({stamp, nodes_.size() - 1, state.p, state.v, state.R, rate_radps});
+    samples_.append() = {stamp, nodes_.size() - 1, state.p, state.v, state.R, rate_radps};
   }
 
   /// Replaces what was recorded by the smoothed run. Once.
@@ -53,12 +58,14 @@ class History {
   [[nodiscard]] std::size_t size() const { return samples_.size(); }
   [[nodiscard]] Stamp stamp(std::size_t i) const { return samples_[i].stamp; }
   [[nodiscard]] Odometry odometry(std::size_t i) const;
+  /// True when a part of it is in the temporary file.
+  [[nodiscard]] bool spilled() const { return nodes_.spilled() || smoothed_.spilled() || samples_.spilled(); }
 
  private:
   using MovingMatrix = Eigen::Matrix<double, kMoving, kMoving>;
   using MovingVector = Eigen::Matrix<double, kMoving, 1>;
+  /// A correction, or a beginning, as the filter saw it; not needed any more after smooth().
   struct Node {
-    Stamp stamp = 0;
     int rows = 0;  ///< of the measurement; 0: the filter began here
     bool moved = false;
     Eigen::Matrix<double, kMoving, kSize> phi;  ///< upper rows of Phi since the node before
@@ -67,14 +74,19 @@ class History {
     Eigen::Matrix<double, kSize, 3> PHt;
     Eigen::Matrix3d S_inverse;
     Eigen::Vector3d y;
-    MovingVector step;                        ///< K y, upper rows
     Eigen::Matrix<double, kMoving, kSize> P;  ///< upper rows, after the correction
-    MovingVector error;                       ///< smoothed minus filtered, after smooth()
-    MovingMatrix covariance;                  ///< smoothed, after smooth()
+  };
+  /// What smooth() finds out there.
+  struct Smoothed {
+    Stamp stamp = 0;
+    bool connected = false;   ///< false: the filter began here
+    MovingVector step;        ///< K y, upper rows
+    MovingVector error;       ///< smoothed minus filtered
+    MovingMatrix covariance;  ///< smoothed
   };
   struct Sample {
-    Stamp stamp;
-    std::size_t node;  ///< the last one at or before it
+    Stamp stamp = 0;
+    std::size_t node = 0;  ///< the last one at or before it
     Eigen::Vector3d p, v;
     Eigen::Quaterniond R;
     Eigen::Vector3d rate;
@@ -82,8 +94,9 @@ class History {
   Node& push(Stamp stamp, const Matrix& P);
   void correctSamples();
 
-  std::deque<Node> nodes_;
-  std::deque<Sample> samples_;
+  SpilledList<Node> nodes_;
+  SpilledList<Smoothed> smoothed_;  ///< one a node
+  SpilledList<Sample> samples_;
   Matrix phi_ = Matrix::Identity();
   bool moved_ = false;
   double rate_variance_ = 0.0;
