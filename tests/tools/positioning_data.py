@@ -108,18 +108,24 @@ def comma(root):
     return {"imu": imu, "gnss": gnss, "reference": reference}
 
 
-def kitti(folder, random, sigma_m=2.0, rate_hz=1.0):
-    """The oxts stream degraded on purpose: fixes of `rate_hz` with white noise."""
-    stamps = []
-    for line in next(Path(folder).rglob("timestamps.txt")).read_text().splitlines():
+def kitti_rows(folder):
+    """Stamps and values of an oxts stream: of a raw drive (a file a row), or of the tracking benchmark (one file)."""
+    stamps, folder = [], Path(folder)
+    times = next(path for pattern in ("timestamps.txt", "*_times.txt") for path in folder.rglob(pattern))
+    for line in times.read_text().splitlines():
         m = re.match(r"(\S+ \S+)\.(\d+)", line)
         if m:
             whole = calendar.timegm(time.strptime(m.group(1), "%Y-%m-%d %H:%M:%S"))
             stamps.append(whole * 10**9 + int(m.group(2).ljust(9, "0")[:9]))
-    files = sorted(p for p in Path(folder).rglob("*.txt") if p.stem.isdigit())
+    files = sorted(folder.rglob("data/*.txt")) or sorted(p for p in folder.glob("*.txt") if p.stem.isdigit())
+    rows = [line for file in files for line in file.read_text().splitlines() if line.strip()]
+    return zip(stamps, ([float(x) for x in row.split()] for row in rows))
+
+
+def kitti(folder, random, sigma_m=2.0, rate_hz=1.0, heading_deg=None):
+    """The oxts stream degraded on purpose: fixes of `rate_hz` with white noise; a heading with noise of `heading_deg`, or none."""
     imu, gnss, reference, enu, due = [], [], [], None, None
-    for stamp, file in zip(stamps, files):
-        v = [float(x) for x in file.read_text().split()]
+    for stamp, v in kitti_rows(folder):
         if imu and stamp <= imu[-1][0]:
             continue
         imu.append((stamp, *v[11:14], *v[17:20]))
@@ -128,7 +134,10 @@ def kitti(folder, random, sigma_m=2.0, rate_hz=1.0):
         due = stamp if due is None else due
         if stamp >= due - 10**7:
             p = [a + random.gauss(0.0, sigma_m) for a in enu.of(*v[0:3])]
-            gnss.append((stamp, *enu.inverse(*p), sigma_m, sigma_m, sigma_m))
+            heading = ()
+            if heading_deg is not None:
+                heading = ((90.0 - math.degrees(v[5]) + random.gauss(0.0, heading_deg)) % 360.0, heading_deg)
+            gnss.append((stamp, *enu.inverse(*p), sigma_m, sigma_m, sigma_m, *heading))
             due += round(1e9 / rate_hz)
     return {"imu": imu, "gnss": gnss, "reference": reference}
 

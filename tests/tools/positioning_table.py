@@ -3,116 +3,80 @@
 """Errors of positioning on synthetic drives and on real recordings, as tables for tests/bench/BENCHMARK.md.
 
     ./atlas run make_drive DIR/101 --seed 101 --duration 150 --no-cameras --no-lidar      # 101..120
-    python3 tests/tools/positioning_table.py --localize PROGRAM [--synthetic DIR] [--data ATLAS_DATA]
+    ./atlas run make_drive STOPS/101 --seed 101 --duration 130 --stop-at 40 --stop-for 70 --no-cameras --no-lidar
+    python3 tests/tools/positioning_table.py --localize PROGRAM [--synthetic DIR] [--stops STOPS] [--data ATLAS_DATA]
 
 Everything goes through atlas_localize; outages are rows left out of the GNSS file. Errors are horizontal: of the
-filter at the end of the outage, of the smoother the largest inside it."""
+filter at the end of the outage, of the smoother the largest inside it. NEES: squared error over its covariance, 3
+components, so 3 on average when the covariance is honest."""
 import argparse
-import bisect
 import json
 import math
 import random
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 sys.path.insert(0, "/usr/lib/python3/dist-packages")  # rosbag
 import positioning_data
+from positioning_run import Prepared, Run, pose_of, tum_lines
 
 FILTERS = ("eskf", "eskf + smoother", "kalman_1d")
-
-
-def write(path, head, rows):
-    path.write_text(head + "\n" + "".join(",".join(v if isinstance(v, str) else repr(v) for v in row) + "\n" for row in rows))
-
-
-def read_tum(path):
-    stamps, poses = [], []
-    for line in path.read_text().splitlines():
-        f = line.split()
-        whole, part = f[0].split(".")
-        stamps.append(int(whole) * 10**9 + int(part))
-        poses.append(tuple(float(v) for v in f[1:8]))
-    return stamps, poses
-
-
-def yaw_of(q):
-    x, y, z, w = q
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-
-
-class Run:
-    """One drive through atlas_localize with one filter; the GNSS is silent from mask[0] to mask[1] (s)."""
-
-    def __init__(self, program, drive, name, mask=None, lever=(0.0, 0.0, 0.0)):
-        self.begin = drive["imu"][0][0]
-        kept = [g for g in drive["gnss"] if not mask or not mask[0] < (g[0] - self.begin) / 1e9 <= mask[1]]
-        with tempfile.TemporaryDirectory() as folder:
-            folder = Path(folder)
-            write(folder / "imu.csv", "stamp_ns,ax,ay,az,gx,gy,gz" + (",qx,qy,qz,qw" if len(drive["imu"][0]) > 7 else ""),
-                  drive["imu"])
-            write(folder / "gnss.csv", "stamp_ns,lat,lon,alt,sd_e,sd_n,sd_u" +
-                  (",heading_deg,sd_heading" if len(kept[0]) > 7 else ""), kept)
-            command = [program, "--imu", folder / "imu.csv", "--gnss", folder / "gnss.csv", "--out", folder / "out",
-                       "--lever-arm", ",".join(map(str, lever)), "--filter", name]
-            self.ok = subprocess.run(command, capture_output=True, check=False).returncode == 0
-            self.tracks = {}
-            if not self.ok:
-                return
-            anchor = json.loads((folder / "out/anchor.json").read_text())
-            self.enu = positioning_data.Enu(anchor["latitude"], anchor["longitude"], anchor["altitude"])
-            self.tracks[name] = read_tum(folder / "out/trajectory.tum")
-            if name == "eskf":
-                self.tracks["eskf + smoother"] = read_tum(folder / "out/smoothed.tum")
-
-    def errors(self, name, drive):
-        """(seconds, horizontal error m, heading error deg or None) at every reference row."""
-        stamps, poses = self.tracks[name]
-        result = []
-        for row in drive["reference"]:
-            i = bisect.bisect_left(stamps, row[0])
-            if i == 0 or i >= len(stamps):
-                continue
-            k = (row[0] - stamps[i - 1]) / (stamps[i] - stamps[i - 1])
-            x, y = ((1 - k) * poses[i - 1][j] + k * poses[i][j] for j in (0, 1))
-            east, north, _ = self.enu.of(*row[1:4])
-            turn = math.degrees(math.remainder(yaw_of(poses[i][3:7]) - row[4], 2 * math.pi)) if len(row) > 4 else None
-            result.append(((row[0] - self.begin) / 1e9, math.hypot(x - east, y - north), turn))
-        return result
+LEVER = (-0.48, -0.19, 0.0)  # rear antenna of the synthetic rig
+STARTS = 4  # outages a drive
 
 
 def rms(values):
     values = list(values)
-    return math.sqrt(sum(v * v for v in values) / len(values)) if values else float("nan")
+    return math.sqrt(sum(v * v for v in values) / len(values)) if values else math.nan
 
 
-def outages(program, drives, length, starts, lever=(0.0, 0.0, 0.0)):
-    """Mean over all outages: error at the end (filters), largest error (smoother)."""
-    sums = {name: [] for name in FILTERS}
-    for drive in drives:
-        for start in starts:
-            for name in ("eskf", "kalman_1d"):
-                run = Run(program, drive, name, (start, start + length), lever)
-                for track in run.tracks:
-                    inside = [e[1] for e in run.errors(track, drive) if start < e[0] <= start + length]
-                    if inside:
-                        sums[track].append(max(inside) if track == "eskf + smoother" else inside[-1])
-    return {name: (sum(v) / len(v), len(v)) if v else (float("nan"), 0) for name, v in sums.items()}
+def mean(values):
+    values = list(values)
+    return sum(values) / len(values) if values else math.nan
 
 
-def print_outages(title, program, drives, plan, lever=(0.0, 0.0, 0.0)):
-    print(f"| {title} | " + " | ".join(FILTERS) + " |\n|---|" + "---|" * len(FILTERS))
-    for length, starts in plan:
-        result = outages(program, drives, length, starts, lever)
-        print(f"| {length} s without GNSS | " + " | ".join(f"{result[n][0]:.2f} m ({result[n][1]})" for n in FILTERS) + " |",
-              flush=True)
+def line(*cells):
+    print("| " + " | ".join(cells) + " |", flush=True)
+
+
+def head(*cells):
+    line(*cells)
+    print("|" + "---|" * len(cells))
+
+
+def chi_square_bounds(freedom, runs):
+    """95 % of the mean of `runs` chi-square variables (Wilson and Hilferty 1931; to 0.01 here)."""
+    k = freedom * runs
+    return [k * (1 - 2 / (9 * k) + z * math.sqrt(2 / (9 * k))) ** 3 / runs for z in (-1.959964, 1.959964)]
+
+
+def outage_errors(program, prepared, length, start, lever=(0.0, 0.0, 0.0)):
+    """{filter: error of this outage}; none of a filter that gave no pose."""
+    result = {}
+    for name in ("eskf", "kalman_1d"):
+        run = Run(program, prepared, name, (start, start + length), lever=lever)
+        for track in run.tracks:
+            inside = [e["horizontal"] for e in run.errors(track, start, start + length)]
+            if inside:
+                result[track] = max(inside) if track == "eskf + smoother" else inside[-1]
+    return result
+
+
+def outage_table(title, program, plan, lever=(0.0, 0.0, 0.0)):
+    """plan: {length s: [(prepared drive, start s)]}."""
+    head(title, *(f"{name}: mean, largest" for name in FILTERS))
+    for length, cases in plan.items():
+        found = [outage_errors(program, prepared, length, start, lever) for prepared, start in cases]
+        cells = []
+        for name in FILTERS:
+            values = [f[name] for f in found if name in f]
+            cells.append(f"{mean(values):.2f}, {max(values):.2f} m ({len(values)})" if values else "no pose")
+        line(f"{length} s without GNSS", *cells)
 
 
 def synthetic(folder):
-    """A record of make_drive; reference thinned to 10 Hz."""
-    text = lambda name, separator: [[f for f in line.replace(separator, " ").split()]
-                                    for line in (folder / name).read_text().splitlines() if line and line[0] != "#"]
+    """A record of make_drive; reference thinned to 10 Hz: stamp, lat, lon, alt, quaternion, velocity in map."""
+    text = lambda name, separator: [row.replace(separator, " ").split() for row in (folder / name).read_text().splitlines()]
     imu = [(int(f[0]), *(-float(v) for v in f[1:4]), *(float(v) for v in f[4:11])) for f in text("imu/imu.txt", ",")]
     gnss = []
     for f in text("gnss/pose.txt", ","):
@@ -120,65 +84,152 @@ def synthetic(folder):
         gnss.append((int(f[0]), *(float(v) for v in f[1:4]), 0.02, 0.02, 0.035, *heading))
     anchor = json.loads((folder / "truth/anchor.json").read_text())
     enu = positioning_data.Enu(anchor["latitude"], anchor["longitude"], anchor["altitude"])
-    stamps, poses = read_tum(folder / "truth/trajectory.tum")
-    reference = [(s, *enu.inverse(*p[0:3]), yaw_of(p[3:7])) for s, p in list(zip(stamps, poses))[::40]]
+    stamps, lines = tum_lines(folder / "truth/trajectory.tum")
+    reference = []
+    for i in range(40, len(stamps) - 1, 40):
+        before, pose, after = (pose_of(lines[i + k]) for k in (-1, 0, 1))
+        velocity = [(b - a) / ((stamps[i + 1] - stamps[i - 1]) / 1e9) for a, b in zip(before[:3], after[:3])]
+        reference.append((stamps[i], *enu.inverse(*pose[0:3]), pose[3:7], velocity))
     return {"imu": imu, "gnss": gnss, "reference": reference}
 
 
-def synthetic_tables(program, folder):
-    lever = (-0.48, -0.19, 0.0)
-    drives = [synthetic(d) for d in sorted(folder.iterdir()) if (d / "truth").is_dir()]
-    print(f"| {len(drives)} synthetic drives | horizontal RMSE | heading RMSE |\n|---|---|---|")
-    for name in ("eskf", "kalman_1d"):
-        errors = {}
-        for drive in drives:
-            run = Run(program, drive, name, lever=lever)
-            for track in run.tracks:
-                errors.setdefault(track, []).extend(e for e in run.errors(track, drive)
-                                                    if e[0] > 10.0 or track == "eskf + smoother")
-        for track, all_errors in errors.items():
-            print(f"| {track} | {100 * rms(e[1] for e in all_errors):.2f} cm | {rms(e[2] for e in all_errors):.3f} deg |",
-                  flush=True)
-    print_outages("synthetic, city speed", program, drives, [(15, [70.0]), (30, [70.0]), (60, [70.0])], lever)
+def drives_in(folder):
+    return [synthetic(d) for d in sorted(folder.iterdir()) if (d / "truth").is_dir()]
+
+
+def accuracy_tables(program, drives):
+    """All drives whole: errors, and whether the covariances say so."""
+    errors = {}  # per filter, per drive
+    for drive in drives:
+        with Prepared(drive) as prepared:
+            for name in ("eskf", "kalman_1d"):
+                run = Run(program, prepared, name, lever=LEVER, covariances=name == "eskf")
+                for track in run.tracks:
+                    errors.setdefault(track, []).append(run.errors(track, 0.0 if track == "eskf + smoother" else 10.0))
+    head(f"{len(drives)} synthetic drives", "horizontal RMSE", "heading RMSE", "roll RMSE", "pitch RMSE")
+    for track, runs in errors.items():
+        whole = [e for run in runs for e in run]
+        line(track, f"{100 * rms(e['horizontal'] for e in whole):.2f} cm",
+             *(f"{rms(e[axis] for e in whole):.3f} deg" for axis in ("yaw", "roll", "pitch")))
+    low, high = chi_square_bounds(3, len(drives))
+    head(f"NEES, mean of {len(drives)} drives", "position", "velocity", "attitude")
+    for track, runs in errors.items():
+        if "position" not in runs[0][0]:
+            continue
+        cells = []
+        for what in ("position", "velocity", "attitude"):
+            moments = {}
+            for run in runs:
+                for e in run:
+                    moments.setdefault(round(e["t"], 1), []).append(e[what])
+            means = [mean(m) for m in moments.values() if len(m) == len(drives)]
+            inside = sum(low <= m <= high for m in means)
+            cells.append(f"{mean(means):.2f} ({100 * inside / len(means):.0f} % of the moments in {low:.2f}..{high:.2f})")
+        line(track, *cells)
+
+
+def outage_starts(number, count=STARTS, first_s=20.0, last_s=88.0):
+    """Spread over the drive, others in each one (golden section), so that they fall into turns, stops and straights."""
+    step = (last_s - first_s) / count
+    return [first_s + step * (k + 0.618034 * number % 1.0) for k in range(count)]
+
+
+def synthetic_outages(program, drives):
+    prepared = [Prepared(drive) for drive in drives]
+    cases = [(p, start) for number, p in enumerate(prepared) for start in outage_starts(number)]
+    outage_table(f"synthetic, {STARTS} outages a drive", program, {length: cases for length in (15, 30, 60)}, LEVER)
+
+
+def standstill(drive):
+    """Begin of the longest standstill, s after the first sample."""
+    begin, best, length = None, 0.0, 0.0
+    for row in drive["reference"]:
+        t = (row[0] - drive["imu"][0][0]) / 1e9
+        if math.hypot(*row[5]) > 1e-5:
+            begin = None
+            continue
+        begin = t if begin is None else begin
+        if t - begin > length:
+            best, length = begin, t - begin
+    return best
+
+
+def standstill_table(program, drives):
+    drifts = {}
+    for drive in drives:
+        with Prepared(drive) as prepared:
+            lost = standstill(drive) + 3.0
+            for name in ("eskf", "kalman_1d"):
+                run = Run(program, prepared, name, blind=(lost, lost + 60.0), lever=LEVER)
+                for track in run.tracks:
+                    yaw = [e["yaw"] for e in run.errors(track, lost, lost + 60.0)]
+                    drifts.setdefault(track, []).append(
+                        max(abs(y - yaw[0]) for y in yaw) if track == "eskf + smoother" else abs(yaw[-1] - yaw[0]))
+    head(f"heading lost for 60 s at standstill, {len(drives)} drives", *FILTERS)
+    line("drift of the heading: mean, largest", *(f"{mean(drifts[n]):.3f}, {max(drifts[n]):.3f} deg" for n in FILTERS))
+
+
+def whole_run(title, program, drives):
+    errors = {name: [] for name in FILTERS}
+    for drive in drives:
+        with Prepared(drive) as prepared:
+            for name in ("eskf", "kalman_1d"):
+                run = Run(program, prepared, name)
+                for track in run.tracks:
+                    errors[track].extend(e["horizontal"] for e in run.errors(track))
+    line(title, *(f"{rms(errors[n]):.2f} m RMSE ({len(errors[n])} poses)" if errors[n] else "no pose" for n in FILTERS))
+
+
+def kitti_tables(program, root):
+    head("KITTI oxts, fixes of 1 Hz and 2 m, ten seeds", *FILTERS)
+    for name in ("kitti_depth_0001", "kitti_tracking_0012", "kitti_raw_0052"):
+        for heading_deg in (None, 3.0):
+            drives = [positioning_data.kitti(root / name / "oxts", random.Random(seed), heading_deg=heading_deg)
+                      for seed in range(101, 111)]
+            span = (drives[0]["imu"][-1][0] - drives[0]["imu"][0][0]) / 1e9
+            whole_run(f"{name}, {span:.1f} s" + (", heading of 3 deg" if heading_deg else ""), program, drives)
+    drives = [positioning_data.kitti(root / "kitti_depth_0001/oxts", random.Random(seed), heading_deg=3.0)
+              for seed in range(101, 111)]
+    prepared = [Prepared(drive) for drive in drives]
+    outage_table("kitti_depth_0001, heading of 3 deg, outage from 4.5 s on", program, {5: [(p, 4.5) for p in prepared]})
 
 
 def real_tables(program, root):
-    drive = positioning_data.walk(root)
-    print_outages("gnss_imu_rtk_walk (on foot)", program, [drive], [(10, range(60, 87, 4)), (15, range(60, 82, 4)), (30, [60, 64])])
+    walk = Prepared(positioning_data.walk(root))
+    outage_table("gnss_imu_rtk_walk (on foot)", program, {10: [(walk, s) for s in range(60, 87, 4)],
+                                                          15: [(walk, s) for s in range(60, 82, 4)],
+                                                          30: [(walk, s) for s in (60, 64)]})
     drive = positioning_data.comma(root)
-    for name in ("eskf", "kalman_1d"):
-        run = Run(program, drive, name)
-        for track in run.tracks:
-            print(f"comma2k19_seg, fixes all the time, {track}: {rms(e[1] for e in run.errors(track, drive)):.2f} m RMSE")
-    print_outages("comma2k19_seg", program, [drive], [(10, [20, 30, 40]), (30, [25])])
-    drives = [positioning_data.kitti(root / "kitti_depth_0001/oxts", random.Random(seed)) for seed in range(101, 111)]
-    for name in ("eskf", "kalman_1d"):
-        errors = {}
-        for drive in drives:
-            run = Run(program, drive, name)
-            for track in run.tracks:
-                errors.setdefault(track, []).extend(run.errors(track, drive))
-        for track, all_errors in errors.items():
-            print(f"KITTI 0001, 1 Hz fixes of 2 m, {track}: {rms(e[1] for e in all_errors):.2f} m RMSE ({len(all_errors)} poses)")
+    head("comma2k19_seg", *FILTERS)
+    whole_run("fixes all the time", program, [drive])
+    comma = Prepared(drive)
+    outage_table("comma2k19_seg", program, {10: [(comma, s) for s in (20, 30, 40)], 30: [(comma, 25)]})
+    kitti_tables(program, root)
     try:
-        drive = positioning_data.husky(root)
+        husky = Prepared(positioning_data.husky(root))
     except ImportError:
         print("Husky: no python3-rosbag")
         return
-    print_outages("Husky, reference = its own fixes", program, [drive], [(10, range(60, 360, 50)), (30, range(60, 350, 70)),
-                                                                       (60, range(60, 320, 80))])
+    outage_table("Husky, reference = its own fixes", program, {10: [(husky, s) for s in range(60, 360, 25)],
+                                                               30: [(husky, s) for s in range(60, 350, 35)],
+                                                               60: [(husky, s) for s in range(60, 320, 50)]})
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--localize", required=True, help="the program atlas_localize")
     parser.add_argument("--synthetic", type=Path, help="folder of records of make_drive")
+    parser.add_argument("--stops", type=Path, help="folder of records with a stop of more than a minute")
     parser.add_argument("--data", type=Path, help="the real recordings")
     options = parser.parse_args()
     if options.data:
         real_tables(options.localize, options.data)
+    if options.stops:
+        standstill_table(options.localize, drives_in(options.stops))
     if options.synthetic:
-        synthetic_tables(options.localize, options.synthetic)
+        drives = drives_in(options.synthetic)
+        accuracy_tables(options.localize, drives)
+        synthetic_outages(options.localize, drives)
 
 
 main()
