@@ -64,8 +64,8 @@ class Endings(WholeRun):
     def test_a_refused_parameter_ends_the_run(self):
         config = self.folder / "wrong.yaml"
         text = self.config_text()
-        self.assertIn("cluster_tolerance_m: 0.5", text)
-        config.write_text(text.replace("cluster_tolerance_m: 0.5", "cluster_tolerance_m: -0.5"))
+        self.assertIn("cluster_tolerance_m: 0.3", text)
+        config.write_text(text.replace("cluster_tolerance_m: 0.3", "cluster_tolerance_m: -0.3"))
         with self.launched("refused", "replay.launch", [f"bag:={self.bag}", f"config:={config}"]) as launched:
             launched.process.wait(timeout=60)
         log = launched.log.read_text(errors="replace")
@@ -74,7 +74,7 @@ class Endings(WholeRun):
 
     def test_an_unknown_parameter_ends_the_run(self):
         config = self.folder / "unknown.yaml"
-        config.write_text(self.config_text().replace("cluster_tolerance_m: 0.5", "cluster_color: 3\n  cluster_tolerance_m: 0.5"))
+        config.write_text(self.config_text().replace("cluster_tolerance_m: 0.3", "cluster_color: 3\n  cluster_tolerance_m: 0.3"))
         with self.launched("unknown", "replay.launch", [f"bag:={self.bag}", f"config:={config}"]) as launched:
             launched.process.wait(timeout=60)
         self.assertIn("unknown parameter /atlas/obstacles/cluster_color", launched.log.read_text(errors="replace"))

@@ -74,11 +74,14 @@ void readParams(Reader& reader, atlas::ObstacleParams& p) {
   reader.read("lidars", p.lidars);
   reader.read("window_s", p.window_s);
   reader.read("max_range_m", p.max_range_m);
-  reader.read("voxel_m", p.voxel_m);
+  reader.read("sweeps_per_lidar", p.sweeps_per_lidar);
   reader.read("ground_cell_m", p.ground_cell_m);
   reader.read("ground_tolerance_m", p.ground_tolerance_m);
   reader.read("max_height_m", p.max_height_m);
   reader.read("cluster_tolerance_m", p.cluster_tolerance_m);
+  reader.read("cluster_tolerance_per_m", p.cluster_tolerance_per_m);
+  reader.read("cluster_step_m", p.cluster_step_m);
+  reader.read("cluster_step_per_m", p.cluster_step_per_m);
   reader.read("min_points", p.min_points);
   reader.read("max_points", p.max_points);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -72,6 +73,73 @@ TEST(Ground, W20_KerbIsGround) {
   for (const LidarPoint& p : points) {
     EXPECT_LT(std::abs(static_cast<double>(p.z) - grid.heightAt(p.x, p.y)), 0.25) << p.x << " " << p.y;
   }
+}
+
+TEST(Ground, SpeedBumpsAreGround) {
+  // a round one of 0.1 x 0.9 m and a plateau of 0.12 m with ramps of 1:8 across the whole street
+  const Height bump = [](double x, double) {
+    const double s = (x - 8.0) / 0.45;
+    return std::abs(s) < 1.0 ? 0.1 * (1.0 - s * s) : 0.0;
+  };
+  const Height plateau = [](double x, double) {
+    return 0.12 * std::clamp((4.0 - std::abs(x - 12.0)) / 1.0, 0.0, 1.0);
+  };
+  for (const Height& height : {bump, plateau}) {
+    const auto points = surface(height, 0, 0);
+    const GroundGrid grid(points, {0, 0, 1.7}, params());
+    for (const LidarPoint& p : points)
+      ASSERT_LT(std::abs(static_cast<double>(p.z) - grid.heightAt(p.x, p.y)), 0.2) << p.x << " " << p.y;
+  }
+}
+
+TEST(Ground, HillsThatBeginAndEndAreGround) {
+  // level, then 12 % up, then level again, each over 8 m and more
+  const Height hill = [](double x, double) { return 0.12 * std::clamp(x - 6.0, 0.0, 10.0); };
+  const auto points = surface(hill, 0, 0);
+  const GroundGrid grid(points, {0, 0, 1.7}, params());
+  EXPECT_LT(worst(grid, hill, 0, 0), 0.2);
+}
+
+TEST(Ground, TheSillOfACarIsNotTheRoad) {
+  // nothing but the side of a bus from 0.35 m upwards is seen where it stands, also not the road behind it
+  const Height uphill = [](double x, double) { return 0.05 * x; };
+  auto points = surface(uphill, 0, 0);
+  const auto hidden = [](const LidarPoint& p) {
+    return p.x > 2.0F && p.x < 14.0F && p.y > 4.0F && p.y < 7.0F;
+  };
+  points.erase(std::remove_if(points.begin(), points.end(), hidden), points.end());
+  for (double x = 2.0; x < 14.0; x += 0.1) {
+    for (double up = 0.35; up < 3.0; up += 0.2) {
+      LidarPoint p;
+      p.x = static_cast<float>(x);
+      p.y = 4.5F;
+      p.z = static_cast<float>(uphill(x, 4.5) + up);
+      points.push_back(p);
+    }
+  }
+  const GroundGrid grid(points, {0, 0, 1.7}, params());
+  for (double x = 2.5; x < 13.5; x += 0.5) EXPECT_NEAR(grid.heightAt(x, 4.5), uphill(x, 4.5), 0.1) << x;
+}
+
+TEST(Ground, TwoLidarsFillOneGrid) {
+  // each sees one half of a street with a kerb; the grid of both is as good as that of one that sees all
+  const Height street = [](double x, double y) { return 0.05 * x + (y > 4.0 ? 0.12 : 0.0); };
+  const auto all = surface(street, 0, 0);
+  std::vector<LidarPoint> left, both;
+  for (const LidarPoint& p : all) {
+    if (p.y > 0.0F) left.push_back(p);
+  }
+  both = left;
+  for (const LidarPoint& p : all) {
+    if (p.y <= 0.0F) both.push_back(p);
+  }
+  const GroundGrid one(left, {0, 0, 1.7}, params()), two(both, {0, 0, 1.7}, params());
+  EXPECT_LT(worst(two, street, 0, 0), 0.2);
+  EXPECT_LT(one.believedCells(), two.believedCells() * 6 / 10);
+  const GroundGrid together(all, {0, 0, 1.7}, params());
+  for (double x = -25.0; x < 25.0; x += 1.3)
+    EXPECT_EQ(two.heightAt(x, 0.3 * x), together.heightAt(x, 0.3 * x))
+        << "the order of points has no influence";
 }
 
 TEST(Ground, RoofsAndWallsDoNotLiftIt) {

@@ -97,6 +97,57 @@ TEST(FindObstacles, W20_LowThingsAreSeen) {
   EXPECT_GT(result.obstacles[0].size.z(), 0.4);
 }
 
+TEST(FindObstacles, TwoLidarsThatSeeTheSameCarGiveOneBox) {
+  // the left lidar sees its rear and its left side, the right one its rear and its right side
+  Scene left, right;
+  left.road();
+  right.road();
+  for (double z = 0.3; z <= 1.5; z += 0.16) {
+    for (double s = 0; s <= 4.2; s += 0.16) {
+      left.add(8.0 + s, 1.8, z);
+      right.add(8.0 + s, 0.0, z);
+    }
+    for (double s = 0; s <= 1.8; s += 0.16) {
+      left.add(8.0, s, z);
+      right.add(8.0, s + 0.05, z);
+    }
+  }
+  Counters counters;
+  const Obstacles both =
+      findObstacles({left.seen(1.0), right.seen(0.97)}, Eigen::Vector3d::Zero(), at(1.0), {}, counters);
+  ASSERT_EQ(both.obstacles.size(), 1U);
+  EXPECT_NEAR(both.obstacles[0].size.x(), 4.2, 0.2);
+  EXPECT_NEAR(both.obstacles[0].size.y(), 1.8, 0.2);
+  EXPECT_NEAR(both.obstacles[0].center.y(), 0.9, 0.1);
+}
+
+TEST(FindObstacles, AFarCarOfFewReturnsIsOneBox) {
+  // rings are 0.65 m apart at 28 m: two on the grille, one on the screen 0.9 m behind it
+  Scene scene;
+  scene.road();
+  for (double y = -0.85; y <= 0.86; y += 0.1) {
+    scene.add(28.0, y, 0.35);
+    scene.add(28.0, y, 0.8);
+    scene.add(28.8, y, 1.25);
+  }
+  Counters counters;
+  const Obstacles result = found(scene, counters);
+  ASSERT_EQ(result.obstacles.size(), 1U);
+  EXPECT_EQ(result.obstacles[0].points, 54U);
+}
+
+TEST(FindObstacles, AStripOfRoofBelongsToItsCarACrownDoesNot) {
+  Scene scene;
+  scene.road();
+  scene.car(8.0, 1.0);
+  for (double y = 1.7; y <= 2.3; y += 0.05) scene.add(10.5, y, 1.55);  // a ring on the middle of the roof
+  Counters counters;
+  ASSERT_EQ(found(scene, counters).obstacles.size(), 1U);
+  EXPECT_NEAR(found(scene, counters).obstacles[0].size.z(), 1.25, 0.05);
+  for (double y = 1.2; y <= 2.6; y += 0.1) scene.add(10.5, y, 3.2);
+  EXPECT_EQ(found(scene, counters).obstacles.size(), 2U);
+}
+
 TEST(FindObstacles, SmallClustersAreCountedHighPointsIgnored) {
   Scene scene;
   scene.road();
@@ -135,6 +186,30 @@ TEST(ObstacleStage, OneAnswerForEachSweepOfTheFirstLidarOnceItsPoseIsKnown) {
   EXPECT_TRUE(answers[2].obstacles.empty()) << "the odometry ended before";
   EXPECT_EQ(stage.counters().get("skipped sweep: no pose yet"), 1U);
   EXPECT_EQ(stage.counters().get("skipped sweep: after the newest pose"), 1U);
+}
+
+TEST(ObstacleStage, OfEachLidarTheNewestSweep) {
+  // a car passes by: two sweeps of the same lidar would make it longer by what it drives in between
+  const auto passing = [](double x) {
+    Scene scene;
+    scene.road();
+    scene.car(x, 1.0);
+    return scene;
+  };
+  for (const int sweeps : {1, 2}) {
+    ObstacleParams params;
+    params.sweeps_per_lidar = sweeps;
+    ObstacleStage stage(params);
+    std::vector<Obstacles> answers;
+    stage.on_obstacles = [&](const Obstacles& o) { answers.push_back(o); };
+    for (const double t : {0.9, 1.0, 1.1}) stage.push(standing(t));
+    stage.push(0, passing(8.0).seen(0.95));
+    stage.push(0, passing(9.0).seen(1.05));
+    for (std::size_t i = 0; i < stage.inputs(); ++i) stage.finish(i);
+    ASSERT_EQ(answers.size(), 2U);
+    ASSERT_EQ(answers[1].obstacles.size(), 1U);
+    EXPECT_NEAR(answers[1].obstacles[0].size.x(), sweeps == 1 ? 4.2 : 5.2, 0.2);
+  }
 }
 
 TEST(ObstacleStage, ArrivalOrderHasNoInfluence) {
@@ -181,7 +256,7 @@ TEST(ObstacleStage, ArrivalOrderHasNoInfluence) {
 
 TEST(ObstacleStage, RefusesParametersByName) {
   ObstacleParams params;
-  params.voxel_m = 0.0;
+  params.sweeps_per_lidar = 0;
   EXPECT_THROW(ObstacleStage{params}, std::invalid_argument);
   params = {};
   params.max_points = 3;

@@ -10,6 +10,8 @@
 namespace atlas {
 namespace {
 
+const Eigen::Vector3d kEye(0.0, 0.0, 0.0);
+
 std::vector<std::uint32_t> all(const std::vector<LidarPoint>& points) {
   std::vector<std::uint32_t> members(points.size());
   std::iota(members.begin(), members.end(), 0U);
@@ -45,7 +47,8 @@ TEST(OrientedBox, TwoSidesGiveTheWholeCarAtAnyYaw) {
   for (int yaw_deg = -88; yaw_deg <= 90; yaw_deg += 7) {
     const double yaw = yaw_deg * M_PI / 180.0;
     const auto points = twoSides(yaw, center, 0.02, 1);
-    const Outcome<Obstacle> box = fitBox(points, all(points));
+    const LidarPoint eye = placed(-12.0, -9.0, 1.0, yaw, center);  // it sees both sides
+    const Outcome<Obstacle> box = fitBox(points, all(points), {eye.x, eye.y, eye.z});
     ASSERT_TRUE(box);
     EXPECT_LT(angleBetweenBoxes(box->yaw_rad, yaw), 1.5 * M_PI / 180.0) << yaw_deg;
     EXPECT_NEAR(box->size.x(), 4.2, 0.15) << yaw_deg;
@@ -69,7 +72,7 @@ TEST(OrientedBox, W21_EveryPointIsInsideItsBox) {
       points.push_back(
           placed(coordinate(random), coordinate(random) / 2, coordinate(random), 0.1 * run, {100, 200, 3}));
     }
-    const Obstacle box = *fitBox(points, all(points));
+    const Obstacle box = *fitBox(points, all(points), kEye);
     EXPECT_EQ(box.points, 43U);
     for (const LidarPoint& p : points) {
       const Eigen::Vector3d d = Eigen::Vector3d(p.x, p.y, p.z) - box.center;
@@ -83,19 +86,32 @@ TEST(OrientedBox, W21_EveryPointIsInsideItsBox) {
   }
 }
 
+TEST(OrientedBox, WhatIsSeenBehindTheOutlineDoesNotTurnIt) {
+  // returns from seats and the far window frame lie on a line across the car
+  const Eigen::Vector3d center(14.0, 9.0, 0.0);
+  for (int yaw_deg = -80; yaw_deg <= 90; yaw_deg += 34) {
+    const double yaw = yaw_deg * M_PI / 180.0;
+    auto points = twoSides(yaw, center, 0.02, 3);
+    for (double s = -1.0; s <= 1.0; s += 0.004) points.push_back(placed(1.2 * s, 0.75 * s, 0.4, yaw, center));
+    const LidarPoint eye = placed(-12.0, -9.0, 1.0, yaw, center);
+    const Obstacle box = *fitBox(points, all(points), {eye.x, eye.y, eye.z});
+    EXPECT_LT(angleBetweenBoxes(box.yaw_rad, yaw), 2.0 * M_PI / 180.0) << yaw_deg;
+  }
+}
+
 TEST(OrientedBox, LargeClustersKeepTheirExtremes) {
   // more points than are scored: the box still holds every one
   auto points = twoSides(0.5, {0, 0, 0}, 0.0, 1);
   while (points.size() < 5000) points.push_back(points[points.size() % 400]);
   points.push_back(placed(2.5, -0.9, 0.0, 0.5, {0, 0, 0}));  // at an index that the stride leaves out
-  const Obstacle box = *fitBox(points, all(points));
+  const Obstacle box = *fitBox(points, all(points), kEye);
   EXPECT_NEAR(box.size.x(), 4.6, 0.05);
 }
 
 TEST(OrientedBox, Edges) {
-  EXPECT_EQ(fitBox({}, {}).reason(), Reason::kEmpty);
+  EXPECT_EQ(fitBox({}, {}, kEye).reason(), Reason::kEmpty);
   const std::vector<LidarPoint> one = {placed(0, 0, 0, 0, {7, 8, 9})};
-  const Obstacle box = *fitBox(one, {0});
+  const Obstacle box = *fitBox(one, {0}, kEye);
   EXPECT_LT((box.center - Eigen::Vector3d(7, 8, 9)).norm(), 1e-9);
   EXPECT_EQ(box.size, Eigen::Vector3d::Zero());
 }

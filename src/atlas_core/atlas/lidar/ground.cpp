@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace atlas {
 namespace {
@@ -16,6 +15,10 @@ constexpr double kSeedFraction =
 constexpr double kSeedRadius_m = 10.0;  ///< where the first estimate is taken
 constexpr double kMaxDoubt_m = 3.0;     ///< a gap wider than this makes nothing else believable
 constexpr int kReach = 3;               ///< cells that support a cell
+constexpr int kFewestForPlane = 5;      ///< believed cells; fewer of them tell no slope
+constexpr double kSlopeSigma = 0.1;     ///< of roads, against the plane's residuals of kHeightSigma_m
+constexpr double kHeightSigma_m = 0.05;
+constexpr std::size_t kMostForMedian = 64;  ///< points of a cell, spread evenly, that tell its middle
 
 double fractile(std::vector<double>& values, double fraction) {
   const auto k = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
@@ -29,6 +32,33 @@ double median(std::vector<double>& values) {
   return 0.5 * (lower + *std::min_element(values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
                                           values.end()));
 }
+
+/// Plane through the believed neighbours of a cell, as seen from its centre; slopes drawn towards level
+/// ground as far as the neighbours do not determine them.
+class PlaneFit {
+ public:
+  void add(double dx, double dy, double height_m) {
+    const Eigen::Vector3d row(1.0, dx, dy);
+    normal_ += row * row.transpose();
+    right_ += height_m * row;
+    ++count_;
+  }
+  [[nodiscard]] int count() const { return count_; }
+  /// Height at the centre.
+  [[nodiscard]] double height() const {
+    constexpr double kWeight = (kHeightSigma_m / kSlopeSigma) * (kHeightSigma_m / kSlopeSigma);
+    Eigen::Matrix3d normal = normal_;
+    normal(1, 1) += kWeight;
+    normal(2, 2) += kWeight;
+    return (normal.inverse() * right_).x();
+  }
+  [[nodiscard]] double mean() const { return right_.x() / count_; }
+
+ private:
+  Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  int count_ = 0;
+};
 
 }  // namespace
 
@@ -44,7 +74,7 @@ void GroundGrid::forNeighbours(int ix, int iy, int reach, Use&& use) const {
     for (int x = std::max(0, ix - reach); x <= std::min(side_ - 1, ix + reach); ++x) {
       const int distance_sq = (x - ix) * (x - ix) + (y - iy) * (y - iy);
       if (distance_sq == 0 || distance_sq > reach * reach) continue;
-      use(cell(x, y), params_.cell_m * std::sqrt(static_cast<double>(distance_sq)));
+      use(cell(x, y), x - ix, y - iy);
     }
   }
 }
@@ -128,47 +158,57 @@ void GroundGrid::grow() {
     for (Cell& c : cells_) c.height_m = kNan;
     return;
   }
-  std::vector<std::pair<double, std::uint32_t>> order;  // (squared distance, cell): a total order
-  order.reserve(cells_.size());
+  for (const std::uint32_t index : outwards())
+    visit(static_cast<int>(index) % side_, static_cast<int>(index) / side_, seed_m);
+}
+
+/// All cells by their distance to the vehicle in whole cells, row by row where it is the same.
+std::vector<std::uint32_t> GroundGrid::outwards() const {
+  std::vector<std::uint32_t> ring(cells_.size()), begin;
   for (int iy = 0; iy < side_; ++iy) {
     for (int ix = 0; ix < side_; ++ix) {
-      const double dx = ix + 0.5 - vehicle_x_, dy = iy + 0.5 - vehicle_y_;
-      order.emplace_back(dx * dx + dy * dy, static_cast<std::uint32_t>(iy * side_ + ix));
+      const auto distance =
+          static_cast<std::uint32_t>(2.0 * std::hypot(ix + 0.5 - vehicle_x_, iy + 0.5 - vehicle_y_));
+      ring[indexOf(ix, iy)] = distance;
+      if (distance + 2 > begin.size()) begin.resize(distance + 2, 0);
+      ++begin[distance + 1];
     }
   }
-  std::sort(order.begin(), order.end());
-  for (const auto& [distance_sq, index] : order) {
-    visit(static_cast<int>(index) % side_, static_cast<int>(index) / side_, seed_m);
-  }
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+  std::vector<std::uint32_t> order(cells_.size());
+  for (std::size_t i = 0; i < ring.size(); ++i) order[begin[ring[i]]++] = static_cast<std::uint32_t>(i);
+  return order;
 }
 
 void GroundGrid::visit(int ix, int iy, double seed_m) {
-  std::vector<double>&believed = believed_, &guessed = guessed_;
-  believed.clear();
+  PlaneFit plane;
+  std::vector<double>& guessed = guessed_;
   guessed.clear();
   double believed_reach_m = 0.0, doubt_m = kMaxDoubt_m;
-  forNeighbours(ix, iy, kReach, [&](const Cell& neighbour, double distance_m) {
+  forNeighbours(ix, iy, kReach, [&](const Cell& neighbour, int dx, int dy) {
     if (!neighbour.visited) return;
+    const double distance_m = params_.cell_m * std::sqrt(static_cast<double>(dx * dx + dy * dy));
     if (neighbour.believed) {
-      believed.push_back(neighbour.height_m);
+      plane.add(params_.cell_m * dx, params_.cell_m * dy, neighbour.height_m);
       believed_reach_m += distance_m;
     } else {
       guessed.push_back(neighbour.height_m);
       doubt_m = std::min(doubt_m, neighbour.doubt_m + distance_m);
     }
   });
-  double expected_m = seed_m;
-  if (!believed.empty()) {
-    doubt_m =
-        believed_reach_m / static_cast<double>(believed.size());  // mean distance: the slope acts over it
-    expected_m = fractile(believed, 0.5);
+  double expected_m = seed_m, limit = params_.max_slope;
+  if (plane.count() > 0) {
+    doubt_m = believed_reach_m / plane.count();  // mean distance: slope or bend act over it
+    const bool enough = plane.count() >= kFewestForPlane;
+    expected_m = enough ? plane.height() : plane.mean();
+    if (enough) limit = params_.max_bend;
   } else if (!guessed.empty()) {
     expected_m = fractile(guessed, 0.5);
   }
   Cell& c = cell(ix, iy);
   c.visited = true;
   // NaN proposals end as not believed
-  c.believed = std::abs(c.proposal_m - expected_m) <= params_.max_step_m + params_.max_slope * doubt_m;
+  c.believed = std::abs(c.proposal_m - expected_m) <= params_.max_step_m + limit * doubt_m;
   c.height_m = c.believed ? c.proposal_m : expected_m;
   c.doubt_m = c.believed ? 0.0 : std::min(kMaxDoubt_m, doubt_m);
 }
@@ -179,9 +219,9 @@ void GroundGrid::fill() {
     for (int ix = 0; ix < side_; ++ix) {
       if (cell(ix, iy).believed) continue;
       double sum = 0.0, weights = 0.0;
-      forNeighbours(ix, iy, kReach, [&](const Cell& neighbour, double distance_m) {
+      forNeighbours(ix, iy, kReach, [&](const Cell& neighbour, int dx, int dy) {
         if (!neighbour.believed) return;  // heights of believed cells do not change in this loop
-        const double weight = 1.0 / (distance_m * distance_m);
+        const double weight = 1.0 / (dx * dx + dy * dy);
         sum += weight * neighbour.height_m;
         weights += weight;
       });
@@ -198,7 +238,8 @@ void GroundGrid::center(const std::vector<LidarPoint>& points, const PointsOfCel
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
     if (!cells_[cell].believed) continue;
     above_m.clear();
-    for (std::uint32_t i = in_cells.begin[cell]; i < in_cells.begin[cell + 1]; ++i) {
+    const std::size_t stride = (in_cells.begin[cell + 1] - in_cells.begin[cell]) / kMostForMedian + 1;
+    for (std::size_t i = in_cells.begin[cell]; i < in_cells.begin[cell + 1]; i += stride) {
       const LidarPoint& p = points[in_cells.members[i]];
       const double above = static_cast<double>(p.z) - heightAt(p.x, p.y);
       if (std::abs(above) <= params_.tolerance_m) above_m.push_back(above);

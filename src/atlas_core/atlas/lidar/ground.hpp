@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The road surface around the vehicle as a grid of heights in map. Each cell proposes its lowest points; a
-// proposal is believed when it fits, within a slope limit, to the believed cells nearer to the vehicle, so
-// the estimate follows slopes and kerbs but does not climb onto a car whose roof is all that was seen of a
-// cell. Idea: the radial slope limit of Himmelsbach et al. 2010, "Fast segmentation of 3D point clouds for
-// ground vehicles", on a square grid.
+// proposal is believed when it continues the believed cells nearer to the vehicle: the plane through them
+// tells what to expect, and how much the road may bend is limited, not how steep it is. So the estimate
+// follows hills, kerbs and speed bumps but does not climb onto a car of which a cell shows only the sill or
+// the roof. Idea: the outward growth of Himmelsbach et al. 2010, "Fast segmentation of 3D point clouds for
+// ground vehicles", on a square grid that all lidars fill together; local planes as in Lim et al. 2021,
+// "Patchwork".
 #pragma once
 
 #include <cstdint>
@@ -17,8 +19,9 @@ struct GroundParams {
   double cell_m = 1.0;
   double radius_m = 40.0;     ///< around the vehicle
   double tolerance_m = 0.25;  ///< points nearer to the surface than this are ground
-  double max_slope = 0.3;     ///< rise over run between neighbouring cells; roads end at about 0.25
-  double max_step_m = 0.1;    ///< added to the slope limit: kerbs and noise
+  double max_slope = 0.3;     ///< rise over run where no slope is known yet; roads end at about 0.25
+  double max_bend = 0.1;      ///< change of slope between neighbouring cells
+  double max_step_m = 0.12;   ///< added to both limits: kerbs and noise
 };
 
 class GroundGrid {
@@ -46,6 +49,7 @@ class GroundGrid {
   [[nodiscard]] double seedHeight() const;
   void grow();
   void visit(int ix, int iy, double seed_m);
+  [[nodiscard]] std::vector<std::uint32_t> outwards() const;
   void fill();
   void center(const std::vector<LidarPoint>& points, const PointsOfCells& in_cells);
   [[nodiscard]] bool cellOf(double x, double y, int& ix, int& iy) const;
@@ -65,7 +69,7 @@ class GroundGrid {
          origin_y_ = 0;  ///< corner of cell (0, 0), on multiples of the cell: the grid does not swim
   double vehicle_x_ = 0, vehicle_y_ = 0;  ///< cells
   std::vector<Cell> cells_;
-  std::vector<double> believed_, guessed_;  ///< of visit(), kept for their memory
+  std::vector<double> guessed_;  ///< of visit(), kept for its memory
 };
 
 }  // namespace atlas

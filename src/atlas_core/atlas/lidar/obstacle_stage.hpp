@@ -16,15 +16,18 @@ namespace atlas {
 
 struct ObstacleParams {
   std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
-  double window_s = 0.15;            ///< sweeps that are clustered together
-  double max_range_m = 40.0;         ///< around the vehicle
-  double voxel_m = 0.15;             ///< before clustering
-  double ground_cell_m = 1.0;        ///< grid of the ground estimate
-  double ground_tolerance_m = 0.25;  ///< points nearer to the ground than this belong to it
-  double max_height_m = 4.0;         ///< above ground; higher points are ignored
-  double cluster_tolerance_m = 0.5;  ///< Euclidean clustering
-  int min_points = 15;               ///< per cluster, after thinning to one point per voxel
-  int max_points = 100000;           ///< per cluster
+  double window_s = 0.15;                 ///< no older sweep is looked at
+  int sweeps_per_lidar = 1;               ///< newest of the window: more of them blur what moves
+  double max_range_m = 40.0;              ///< around the vehicle
+  double ground_cell_m = 1.0;             ///< grid of the ground estimate
+  double ground_tolerance_m = 0.25;       ///< points nearer to the ground than this belong to it
+  double max_height_m = 4.0;              ///< above ground; higher points are ignored
+  double cluster_tolerance_m = 0.3;       ///< horizontal gap inside a cluster, at the vehicle
+  double cluster_tolerance_per_m = 0.02;  ///< added for each metre of range: beams spread
+  double cluster_step_m = 0.35;           ///< the same for gaps in height
+  double cluster_step_per_m = 0.02;
+  int min_points = 8;       ///< per cluster
+  int max_points = 100000;  ///< per cluster
 };
 /// Throws std::invalid_argument that names the field and its value.
 void validate(const ObstacleParams& params);
@@ -50,12 +53,14 @@ class ObstacleStage : public Stage {
     bool has_pose;                        ///< the triggering sweep has batches
     std::vector<BatchedSweepPtr> sweeps;  ///< the window at `stamp`
   };
+  /// Sweeps of the window at `stamp`, at most sweeps_per_lidar of each lidar; lidar by lidar, oldest first.
+  [[nodiscard]] std::vector<BatchedSweepPtr> newestOfEach(Stamp stamp);
   void answerReady(Stamp odometry_known);
   void answer(const Waiting& waiting);
 
   ObstacleParams params_;
   Trajectory trajectory_;
-  SweepWindow window_;
+  std::vector<SweepWindow> windows_;  ///< by lidar
   std::deque<Waiting> waiting_;
 };
 

@@ -9,10 +9,10 @@ namespace atlas {
 namespace {
 
 constexpr double kMinDistance_m = 0.05;  ///< points nearer to a side than this are equally near: lidar noise
-constexpr int kCoarseSteps = 45;         ///< of 2 deg over a quarter turn
+constexpr int kCoarseSteps = 30;         ///< of 3 deg over a quarter turn
 constexpr double kCoarse_rad = M_PI / 2.0 / kCoarseSteps;
-constexpr int kFineSteps = 4;               ///< of 0.5 deg to either side
-constexpr std::size_t kScoredPoints = 500;  ///< of a large cluster, spread evenly, decide on the yaw
+constexpr int kFineSteps = 5;          ///< of 0.6 deg to either side
+constexpr std::size_t kSectors = 128;  ///< of the angle under which a cluster is seen: one point each
 
 /// Extent of the points along a direction.
 struct Extent {
@@ -84,21 +84,54 @@ class YawSearch {
   std::vector<double> c1_, c2_;
 };
 
+/// The nearest point of each sector as seen from `eye`; points and eye relative to one of the points.
+std::vector<Eigen::Vector2d> outlineOf(const std::vector<Eigen::Vector2d>& points,
+                                       const Eigen::Vector2d& eye) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) middle += p;
+  const Eigen::Vector2d ahead = middle / static_cast<double>(points.size()) - eye;
+  const auto bearing = [&](const Eigen::Vector2d& p) {  // from -1 to 1 about `ahead` or further off
+    const Eigen::Vector2d d = p - eye;
+    const double along = ahead.dot(d), across = ahead.x() * d.y() - ahead.y() * d.x();
+    return across / (std::abs(across) + std::abs(along)) + (along < 0.0 ? (across < 0.0 ? -1.0 : 1.0) : 0.0);
+  };
+  Extent seen;
+  std::vector<double> bearings;
+  bearings.reserve(points.size());
+  for (const Eigen::Vector2d& p : points) {
+    bearings.push_back(bearing(p));
+    seen.add(bearings.back());
+  }
+  const double sector = std::max(1e-9, seen.size()) / (static_cast<double>(kSectors) - 0.5);
+  std::vector<std::size_t> nearest(kSectors, points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::size_t& best =
+        nearest[std::min(kSectors - 1, static_cast<std::size_t>((bearings[i] - seen.low) / sector))];
+    if (best == points.size() || (points[i] - eye).squaredNorm() < (points[best] - eye).squaredNorm())
+      best = i;
+  }
+  std::vector<Eigen::Vector2d> outline;
+  for (const std::size_t i : nearest) {
+    if (i < points.size()) outline.push_back(points[i]);
+  }
+  return outline;
+}
+
 }  // namespace
 
-Outcome<Obstacle> fitBox(const std::vector<LidarPoint>& points_map,
-                         const std::vector<std::uint32_t>& members) {
+Outcome<Obstacle> fitBox(const std::vector<LidarPoint>& points_map, const std::vector<std::uint32_t>& members,
+                         const Eigen::Vector3d& seen_from_map) {
   if (members.empty()) return Reason::kEmpty;
   // relative to the first point: coordinates of some kilometres would cost digits
   const LidarPoint& first = points_map[members.front()];
   const Eigen::Vector3d origin(first.x, first.y, first.z);
-  const std::size_t stride = (members.size() + kScoredPoints - 1) / kScoredPoints;
-  std::vector<Eigen::Vector2d> scored;
-  for (std::size_t i = 0; i < members.size(); i += stride) {
-    const LidarPoint& p = points_map[members[i]];
-    scored.emplace_back(p.x - origin.x(), p.y - origin.y());
+  std::vector<Eigen::Vector2d> plan;
+  plan.reserve(members.size());
+  for (const std::uint32_t i : members) {
+    const LidarPoint& p = points_map[i];
+    plan.emplace_back(p.x - origin.x(), p.y - origin.y());
   }
-  double yaw_rad = YawSearch(std::move(scored)).best();
+  double yaw_rad = YawSearch(outlineOf(plan, (seen_from_map - origin).head<2>())).best();
 
   const double cosine = std::cos(yaw_rad), sine = std::sin(yaw_rad);
   Extent along, across, up;

@@ -14,8 +14,10 @@
 namespace atlas {
 
 /// The box that holds all points of `members` (every one counts), length >= width, yaw in (-pi/2, pi/2].
-/// kEmpty without members.
+/// The yaw is that of the outline towards `seen_from_map`: what lies behind it, seen through windows or over
+/// a bonnet, says nothing about the sides. kEmpty without members.
 [[nodiscard]] Outcome<Obstacle> fitBox(const std::vector<LidarPoint>& points_map,
-                                       const std::vector<std::uint32_t>& members);
+                                       const std::vector<std::uint32_t>& members,
+                                       const Eigen::Vector3d& seen_from_map);
 
 }  // namespace atlas
