@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "atlas/localization/localization_status.hpp"
 #include "stage_run.hpp"
 
 namespace atlas::test {
