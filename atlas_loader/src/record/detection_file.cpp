@@ -47,7 +47,9 @@ Detection2d parseDetection(RowFields& fields, DetectionLayout layout, const Imag
     box.x_min = a, box.y_min = b, box.x_max = c, box.y_max = d;
   } else {
     const double x = top_left ? a : a - c / 2, y = top_left ? b : b - d / 2;
-    box.x_min = x * w, box.y_min = y * h, box.x_max = (x + c) * w, box.y_max = (y + d) * h;
+    // The left edge of the image, 0 here, is pixel -1/2: the centre of the first pixel is pixel 0.
+    box.x_min = x * w - 0.5, box.y_min = y * h - 0.5;
+    box.x_max = (x + c) * w - 0.5, box.y_max = (y + d) * h - 0.5;
   }
   if (fields.ok() && (box.x_max < box.x_min || box.y_max < box.y_min)) {
     fields.fail("box with a negative side", "fields 2..5: width or height below 0");

@@ -32,10 +32,11 @@ TEST_F(Detectors, LayoutAIsByTheTopLeftCorner) {
   EXPECT_EQ(file.layout(), DetectionLayout::kTopLeft);
   const auto boxes = file.boxes(2);
   ASSERT_EQ(boxes.size(), 1U);
-  EXPECT_NEAR(boxes[0].x_min, 310, 0.5);
-  EXPECT_NEAR(boxes[0].y_min, 550, 0.5);
-  EXPECT_NEAR(boxes[0].x_max, 379.97, 0.1);
-  EXPECT_NEAR(boxes[0].y_max, 582.24, 0.1);
+  // To half a pixel: that program takes the left edge of the image for pixel 0, here it is pixel -1/2.
+  EXPECT_NEAR(boxes[0].x_min, 0.1617 * 1920 - 0.5, 1e-9);
+  EXPECT_NEAR(boxes[0].y_min, 0.4584 * 1200 - 0.5, 1e-9);
+  EXPECT_NEAR(boxes[0].x_max, 379.97 - 0.5, 0.1);
+  EXPECT_NEAR(boxes[0].y_max, 582.24 - 0.5, 0.1);
   EXPECT_EQ(boxes[0].class_id, 2);
   EXPECT_NEAR(boxes[0].confidence, 0.8189 * 0.9967, 1e-9);
 }
@@ -45,10 +46,21 @@ TEST_F(Detectors, LayoutBIsByTheCentre) {
   EXPECT_EQ(file.layout(), DetectionLayout::kCenter);
   const auto boxes = file.boxes(0);
   ASSERT_EQ(boxes.size(), 1U);
-  EXPECT_NEAR(boxes[0].x_min, 0.4 * 1920, 1e-9);
-  EXPECT_NEAR(boxes[0].x_max, 0.6 * 1920, 1e-9);
-  EXPECT_NEAR(boxes[0].y_min, 0.2 * 1200, 1e-9);
-  EXPECT_NEAR(boxes[0].y_max, 0.3 * 1200, 1e-9);
+  EXPECT_NEAR(boxes[0].x_min, 0.4 * 1920 - 0.5, 1e-9);
+  EXPECT_NEAR(boxes[0].x_max, 0.6 * 1920 - 0.5, 1e-9);
+  EXPECT_NEAR(boxes[0].y_min, 0.2 * 1200 - 0.5, 1e-9);
+  EXPECT_NEAR(boxes[0].y_max, 0.3 * 1200 - 0.5, 1e-9);
+}
+
+// A box around the whole image ends at the outer edges of its first and last pixels.
+TEST_F(Detectors, TheImageBeginsHalfAPixelBeforeItsFirstPixel) {
+  auto file = open("0, 0.5, 0.5, 1, 1, 0.9, 7\n", {640, 512});
+  const auto boxes = file.boxes(0);
+  ASSERT_EQ(boxes.size(), 1U);
+  EXPECT_EQ(boxes[0].x_min, -0.5);
+  EXPECT_EQ(boxes[0].y_min, -0.5);
+  EXPECT_EQ(boxes[0].x_max, 639.5);
+  EXPECT_EQ(boxes[0].y_max, 511.5);
 }
 
 TEST_F(Detectors, LayoutCIsInPixelsUnclipped) {
