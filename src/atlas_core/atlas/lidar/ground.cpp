@@ -20,10 +20,15 @@ constexpr double kSlopeSigma = 0.1;     ///< of roads, against the plane's resid
 constexpr double kHeightSigma_m = 0.05;
 constexpr std::size_t kMostForMedian = 64;  ///< points of a cell, spread evenly, that tell its middle
 
+/// Reorders the values.
+template <class Iterator>
+double fractile(Iterator first, Iterator last, double fraction) {
+  const auto k = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(last - first - 1));
+  std::nth_element(first, first + k, last);
+  return static_cast<double>(*(first + k));
+}
 double fractile(std::vector<double>& values, double fraction) {
-  const auto k = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
+  return fractile(values.begin(), values.end(), fraction);
 }
 
 double median(std::vector<double>& values) {
@@ -66,6 +71,7 @@ class PlaneFit {
 struct GroundGrid::PointsOfCells {
   std::vector<std::uint32_t> begin;    ///< into members, one more than cells
   std::vector<std::uint32_t> members;  ///< point indices, ascending within a cell
+  std::vector<float> heights_m;        ///< of the members, until propose() reorders them within their cell
 };
 
 template <class Use>
@@ -83,22 +89,22 @@ GroundGrid::GroundGrid(const std::vector<LidarPoint>& points, const Eigen::Vecto
                        const GroundParams& params)
     : params_(params) {
   const double edge = params.cell_m;
+  cells_per_m_ = 1.0 / edge;
   origin_x_ = std::floor((center_map.x() - params.radius_m) / edge) * edge;
   origin_y_ = std::floor((center_map.y() - params.radius_m) / edge) * edge;
   side_ = static_cast<int>(std::ceil(2.0 * params.radius_m / edge)) + 1;
   vehicle_x_ = (center_map.x() - origin_x_) / edge;
   vehicle_y_ = (center_map.y() - origin_y_) / edge;
   cells_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), Cell{});
-  const PointsOfCells in_cells = sortIntoCells(points);
-  propose(points, in_cells);
+  PointsOfCells in_cells = sortIntoCells(points);
+  propose(in_cells);
   grow();
   fill();
   center(points, in_cells);
 }
 
 bool GroundGrid::cellOf(double x, double y, int& ix, int& iy) const {
-  const double cx = std::floor((x - origin_x_) / params_.cell_m),
-               cy = std::floor((y - origin_y_) / params_.cell_m);
+  const double cx = (x - origin_x_) * cells_per_m_, cy = (y - origin_y_) * cells_per_m_;
   if (!(cx >= 0.0 && cy >= 0.0 && cx < side_ && cy < side_)) return false;
   ix = static_cast<int>(cx);
   iy = static_cast<int>(cy);
@@ -118,21 +124,22 @@ GroundGrid::PointsOfCells GroundGrid::sortIntoCells(const std::vector<LidarPoint
   }
   for (std::size_t i = 1; i < result.begin.size(); ++i) result.begin[i] += result.begin[i - 1];
   result.members.resize(result.begin.back());
+  result.heights_m.resize(result.begin.back());
   std::vector<std::uint32_t> next(result.begin.begin(), result.begin.end() - 1);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (cell_of_point[i] != kOutside)
-      result.members[next[cell_of_point[i]]++] = static_cast<std::uint32_t>(i);
+    if (cell_of_point[i] == kOutside) continue;
+    const std::uint32_t place = next[cell_of_point[i]]++;
+    result.members[place] = static_cast<std::uint32_t>(i);
+    result.heights_m[place] = points[i].z;
   }
   return result;
 }
 
-void GroundGrid::propose(const std::vector<LidarPoint>& points, const PointsOfCells& in_cells) {
-  std::vector<double> heights;
+void GroundGrid::propose(PointsOfCells& in_cells) {
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-    heights.clear();
-    for (std::uint32_t i = in_cells.begin[cell]; i < in_cells.begin[cell + 1]; ++i)
-      heights.push_back(points[in_cells.members[i]].z);
-    cells_[cell].proposal_m = heights.empty() ? kNan : fractile(heights, kLowFraction);
+    const auto first = in_cells.heights_m.begin() + in_cells.begin[cell],
+               last = in_cells.heights_m.begin() + in_cells.begin[cell + 1];
+    cells_[cell].proposal_m = first == last ? kNan : fractile(first, last, kLowFraction);
   }
 }
 
@@ -252,14 +259,14 @@ void GroundGrid::center(const std::vector<LidarPoint>& points, const PointsOfCel
 double GroundGrid::heightAt(double x, double y) const {
   int ix = 0, iy = 0;
   if (!cellOf(x, y, ix, iy)) return kNan;
-  const double last = side_ - 1;
-  const double cx = std::clamp((x - origin_x_) / params_.cell_m - 0.5, 0.0,
-                               last);  // cell centres; flat half cell at the rim
-  const double cy = std::clamp((y - origin_y_) / params_.cell_m - 0.5, 0.0, last);
+  const double last = side_ - 1;  // between cell centres; flat in the half cell at the rim
+  const double cx = std::clamp((x - origin_x_) * cells_per_m_ - 0.5, 0.0, last);
+  const double cy = std::clamp((y - origin_y_) * cells_per_m_ - 0.5, 0.0, last);
   const int x0 = std::min(static_cast<int>(cx), side_ - 2), y0 = std::min(static_cast<int>(cy), side_ - 2);
   const double u = cx - x0, v = cy - y0;
-  return (1 - v) * ((1 - u) * cell(x0, y0).height_m + u * cell(x0 + 1, y0).height_m) +
-         v * ((1 - u) * cell(x0, y0 + 1).height_m + u * cell(x0 + 1, y0 + 1).height_m);
+  const Cell *low = &cells_[indexOf(x0, y0)], *high = low + side_;
+  return (1 - v) * ((1 - u) * low[0].height_m + u * low[1].height_m) +
+         v * ((1 - u) * high[0].height_m + u * high[1].height_m);
 }
 
 std::size_t GroundGrid::believedCells() const {

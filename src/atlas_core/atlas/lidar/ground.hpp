@@ -45,7 +45,7 @@ class GroundGrid {
   };
   struct PointsOfCells;
   [[nodiscard]] PointsOfCells sortIntoCells(const std::vector<LidarPoint>& points) const;
-  void propose(const std::vector<LidarPoint>& points, const PointsOfCells& in_cells);
+  void propose(PointsOfCells& in_cells);
   [[nodiscard]] double seedHeight() const;
   void grow();
   void visit(int ix, int iy, double seed_m);
@@ -65,6 +65,7 @@ class GroundGrid {
 
   GroundParams params_;
   int side_ = 0;  ///< cells
+  double cells_per_m_ = 0;
   double origin_x_ = 0,
          origin_y_ = 0;  ///< corner of cell (0, 0), on multiples of the cell: the grid does not swim
   double vehicle_x_ = 0, vehicle_y_ = 0;  ///< cells

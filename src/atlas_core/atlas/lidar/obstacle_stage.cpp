@@ -207,23 +207,27 @@ void ObstacleStage::onEnd() { answerReady(kEndOfTime); }
 
 Obstacles findObstacles(const std::vector<BatchedSweepPtr>& sweeps, const Eigen::Vector3d& vehicle_map,
                         Stamp stamp, const ObstacleParams& params, Counters& counters) {
-  const std::vector<LidarPoint> points = nearPoints(sweeps, vehicle_map, stamp, params.max_range_m);
+  std::vector<LidarPoint> points = nearPoints(sweeps, vehicle_map, stamp, params.max_range_m);
   GroundParams ground_params;
   ground_params.cell_m = params.ground_cell_m;
   ground_params.radius_m = params.max_range_m;
   ground_params.tolerance_m = params.ground_tolerance_m;
   const GroundGrid grid(points, vehicle_map, ground_params);
 
-  auto ground = std::make_shared<MapCloud>();
-  ground->stamp = stamp;
-  ground->points.reserve(points.size());
   std::vector<LidarPoint> raised;
-  raised.reserve(points.size());
+  std::size_t on_ground = 0;
   for (const LidarPoint& point : points) {
     const double above_m = static_cast<double>(point.z) - grid.heightAt(point.x, point.y);
-    if (std::abs(above_m) <= params.ground_tolerance_m) ground->points.push_back(point);
-    if (above_m > params.ground_tolerance_m && above_m <= params.max_height_m) raised.push_back(point);
+    if (std::abs(above_m) <= params.ground_tolerance_m) {
+      points[on_ground++] = point;  // never beyond the point that is read
+    } else if (above_m > 0.0 && above_m <= params.max_height_m) {
+      raised.push_back(point);
+    }
   }
+  points.resize(on_ground);
+  auto ground = std::make_shared<MapCloud>();
+  ground->stamp = stamp;
+  ground->points = std::move(points);
   Obstacles result;
   result.stamp = stamp;
   result.ground = ground;
