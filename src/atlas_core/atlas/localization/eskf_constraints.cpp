@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is known without a receiver, five times a second: a vehicle that stands does not move, one that drives
-// does not slip or hop, and the IMU's own roll and pitch are right in the long run.
+// does not slip or hop, and the IMU's own roll and pitch are right in the long run. And height by air
+// pressure.
 #include <algorithm>
 #include <cmath>
 
@@ -105,6 +106,17 @@ void EskfFilter::useUp(const Eigen::Quaterniond& R_enu_imu) {
   const bool used =
       apply<2>("up", eskf::upMeasurement(state_, up_imu, earth_.up(state_.p), variance), kConstraintGate);
   (used ? up_used_ : up_outlier_).add(counters_);
+}
+
+void EskfFilter::updateHeight(Stamp stamp, double z_map_m, double variance_m2) {
+  enqueue({stamp, MeasurementQueue::Height{z_map_m, variance_m2}});
+}
+
+void EskfFilter::use(Stamp /*stamp*/, const MeasurementQueue::Height& height) {
+  if (!running_) return height_alone_.add(counters_);
+  const auto z = eskf::heightMeasurement(state_, height.z_map_m, height.variance);
+  (apply<1>("pressure", z, params_.heading_gate_mahalanobis_sq) ? height_used_ : height_outlier_)
+      .add(counters_);
 }
 
 }  // namespace atlas

@@ -64,16 +64,21 @@ void EskfFilter::enqueue(const Entry& entry) {
   const bool lost = !current_ || toSeconds(entry.stamp - current_->stamp) > kLongestGap_s;
   if (lost) skipPendingBefore(entry.stamp, &EskfFilter::fix_alone_, &EskfFilter::heading_alone_);
   if (pending_.full()) {
-    (pending_.front().isFix() ? fix_alone_ : heading_alone_).add(counters_);
+    skip(pending_.front(), &EskfFilter::fix_alone_, &EskfFilter::heading_alone_);
     pending_.pop();
   }
   pending_.push(entry);
 }
 
+void EskfFilter::skip(const Entry& entry, Tally EskfFilter::*fix_tally, Tally EskfFilter::*heading_tally) {
+  if (entry.isHeight()) return height_alone_.add(counters_);
+  (this->*(entry.isFix() ? fix_tally : heading_tally)).add(counters_);
+}
+
 void EskfFilter::skipPendingBefore(Stamp stamp, Tally EskfFilter::*fix_tally,
                                    Tally EskfFilter::*heading_tally) {
   while (!pending_.empty() && pending_.front().stamp < stamp) {
-    (this->*(pending_.front().isFix() ? fix_tally : heading_tally)).add(counters_);
+    skip(pending_.front(), fix_tally, heading_tally);
     pending_.pop();
   }
 }

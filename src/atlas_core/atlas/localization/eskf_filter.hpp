@@ -31,6 +31,7 @@ class EskfFilter : public PositioningFilter {
 
   void update(Stamp stamp, const Eigen::Vector3d& p_map_antenna, const Eigen::Matrix3d& R_m2) override;
   void updateHeading(Stamp stamp, double yaw_rad, double variance_rad2) override;
+  void updateHeight(Stamp stamp, double z_map_m, double variance_m2) override;
   std::optional<Odometry> propagate(const ImuSample& sample) override;
   void distrust(double velocity_variance, double turn_variance) override;
   void finish() override;
@@ -47,6 +48,8 @@ class EskfFilter : public PositioningFilter {
   void stepTo(const ImuSample& sample, double gap_s);
   void use(Stamp stamp, const MeasurementQueue::Fix& fix);
   void use(Stamp stamp, const MeasurementQueue::Heading& heading);
+  void use(Stamp stamp, const MeasurementQueue::Height& height);
+  void skip(const Entry& entry, Tally EskfFilter::*fix_tally, Tally EskfFilter::*heading_tally);
   void tryStart();
   void learnFixScale(Stamp stamp);
   void recoverPosition(Stamp stamp, const Eigen::Vector3d& innovation_m);
@@ -98,6 +101,8 @@ class EskfFilter : public PositioningFilter {
   Tally heading_used_{"heading used"}, heading_outlier_{"skipped heading: outlier"},
       heading_alone_{"skipped heading: no imu samples around it"},
       heading_after_{"skipped heading: after the last imu sample"};
+  Tally height_used_{"pressure used"}, height_outlier_{"skipped pressure: outlier"},
+      height_alone_{"skipped pressure: no imu samples around it"};
   Tally started_gnss_{"heading initialized from gnss heading"},
       started_velocity_{"heading initialized from velocity"};
   Tally recovered_{"position re-initialized after outliers"},

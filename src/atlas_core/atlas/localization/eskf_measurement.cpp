@@ -33,6 +33,14 @@ Measurement<1> headingMeasurement(const State& state, double yaw_rad, double var
   return z;
 }
 
+Measurement<1> heightMeasurement(const State& state, double z_map_m, double variance) {
+  Measurement<1> z;
+  z.y(0) = z_map_m - state.p.z();
+  z.H(0, kP + 2) = 1.0;
+  z.R(0, 0) = variance;
+  return z;
+}
+
 Measurement<2> upMeasurement(const State& state, const Eigen::Vector3d& up_imu, const Eigen::Vector3d& up_map,
                              double variance) {
   const Eigen::Vector3d seen = state.R * up_imu;  // = up - theta x up, first order

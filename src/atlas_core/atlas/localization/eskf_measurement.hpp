@@ -9,6 +9,7 @@
 //   no slip    with u = R'v: 0 = u_y - mount_yaw u_x - axle w_z     (the rear axle does not move sideways:
 //              bicycle model, Rajamani 2012, 2.2)
 //   no hop     0 = u_z + mount_pitch u_x + axle w_y
+//   height     h = p_z                         (of the imu, by air pressure)
 //   standing   0 = v
 //   not turning  gyro = b_g + R'W
 #pragma once
@@ -37,6 +38,7 @@ Measurement<2> upMeasurement(const State& state, const Eigen::Vector3d& up_imu, 
 /// Row 0: no slip, row 1: no hop.
 Measurement<2> wheelsMeasurement(const State& state, const Eigen::Vector3d& rate_radps, double slip_variance,
                                  double hop_variance);
+Measurement<1> heightMeasurement(const State& state, double z_map_m, double variance);
 Measurement<3> standingMeasurement(const State& state, double variance);
 /// gyro_radps: mean over a while of standing, bias included.
 Measurement<3> notTurningMeasurement(const State& state, const Earth& earth,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How fixes of the two receivers reach the filter: checked, in map, with the covariance and lever arm of
-// their own receiver.
+// How fixes of the two receivers (and air pressure) reach the filter: checked, in map, with the covariance
+// and lever arm of their own receiver.
 #include <cmath>
 #include <string_view>
 
@@ -119,6 +119,14 @@ void LocalizationStage::use(const GnssFix& fix) {
     return;
   }
   giveToFilter(in_map, Receivers::Use::kPrimary);
+}
+
+void LocalizationStage::usePressure(const ScalarSample& pressure) {
+  if (params_.smoothed) return;
+  std::optional<double> z;
+  if (!receivers_.starting(pressure.stamp)) z = receivers_.prediction()->T_map_imu.translation.z();
+  const auto height = barometer_.add(pressure, z, keeper_.fixed(pressure.stamp));
+  if (height && filter_) filter_->updateHeight(pressure.stamp, height->z_map_m, height->variance_m2);
 }
 
 void LocalizationStage::useSecond(const GnssFix& fix) {

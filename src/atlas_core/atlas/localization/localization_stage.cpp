@@ -13,7 +13,8 @@ constexpr double kMaxNormError = 1e-2;  // quaternions recorded with six digits,
 
 std::vector<std::string> inputNames(const LocalizationParams& params) {
   std::vector<std::string> names = {"tf_static", "gnss/fix", "gnss/heading", "imu"};
-  if (params.receivers.second_receiver) names.emplace_back("imu/gnss/fix");
+  if (params.receivers.second_receiver || params.barometer.barometer) names.emplace_back("imu/gnss/fix");
+  if (params.barometer.barometer) names.emplace_back("imu/pressure");
   return names;
 }
 }  // namespace
@@ -23,6 +24,9 @@ void validate(const LocalizationParams& params) {
   makePositioningFilter(params.filter, params.positioning, Eigen::Vector3d::Zero(), {}, counters);
   validate(params.receivers);
   validate(params.imu_guard);
+  validate(params.barometer);
+  if (params.barometer.barometer && params.filter != "eskf")
+    throw std::invalid_argument("localization: barometer needs filter eskf, got '" + params.filter + "'");
 }
 
 LocalizationStage::LocalizationStage(const LocalizationParams& params)
@@ -30,6 +34,7 @@ LocalizationStage::LocalizationStage(const LocalizationParams& params)
       params_(params),
       receivers_(params.receivers, counters_),
       guard_(params.imu_guard, counters_),
+      barometer_(params.barometer, counters_),
       keeper_(counters_) {
   validate(params_);
 }
@@ -45,6 +50,10 @@ void LocalizationStage::push(const GnssFix& fix) {
 void LocalizationStage::pushSecond(const GnssFix& fix) {
   ATLAS_CHECK(params_.receivers.second_receiver, "localization: there is no second receiver");
   enqueue(kSecondFix, fix.stamp, [this, fix] { useSecond(fix); });
+}
+void LocalizationStage::pushPressure(const ScalarSample& pressure) {
+  ATLAS_CHECK(params_.barometer.barometer, "localization: there is no barometer");
+  enqueue(kPressure, pressure.stamp, [this, pressure] { usePressure(pressure); });
 }
 void LocalizationStage::push(const GnssHeading& heading) {
   enqueue(kGnssHeading, heading.stamp, [this, heading] { use(heading); });

@@ -10,6 +10,7 @@
 
 #include "atlas/base/stage.hpp"
 #include "atlas/calibration/rig.hpp"
+#include "atlas/localization/barometer.hpp"
 #include "atlas/localization/imu_guard.hpp"
 #include "atlas/localization/localization_status.hpp"
 #include "atlas/localization/positioning_filter.hpp"
@@ -26,6 +27,7 @@ struct LocalizationParams {
   PositioningParams positioning;
   ReceiverParams receivers;
   ImuGuardParams imu_guard;
+  BarometerParams barometer;
   /// A smoothed run over the same data: the stage answers from it instead of filtering (second pass offline).
   std::shared_ptr<const eskf::History> smoothed;
 };
@@ -39,8 +41,9 @@ class LocalizationStage : public Stage {
     kGnssFix,
     kGnssHeading,
     kImu,
-    kSecondFix
-  };  ///< kSecondFix: if asked for
+    kSecondFix,
+    kPressure
+  };  ///< the last two: if asked for
 
   explicit LocalizationStage(const LocalizationParams& params);
   ~LocalizationStage() override;
@@ -48,6 +51,7 @@ class LocalizationStage : public Stage {
   void push(Stamp stamp, const StaticTransforms& transforms);
   void push(const GnssFix& fix);
   void pushSecond(const GnssFix& fix);
+  void pushPressure(const ScalarSample& pressure);
   void push(const GnssHeading& heading);
   void push(const ImuSample& sample);
 
@@ -78,6 +82,7 @@ class LocalizationStage : public Stage {
   void giveToFilter(const Receivers::Fix& fix, Receivers::Use receiver);
   void onInnovation(const InnovationRecord& record);
 
+  void usePressure(const ScalarSample& pressure);
   void use(const GnssHeading& heading);
   void use(const ImuSample& sample);
   void answer(Stamp stamp, const std::optional<Odometry>& odometry);
@@ -93,6 +98,7 @@ class LocalizationStage : public Stage {
   Eigen::Vector3d filter_lever_ = Eigen::Vector3d::Zero();  ///< of the fixes that the filter expects
   Receivers receivers_;
   ImuGuard guard_;
+  Barometer barometer_;
   StatusKeeper keeper_;
   Stamp second_in_filter_ = kBeginOfTime;  ///< newest fix of the second receiver that the filter was given
   std::optional<Geodetic> second_before_;

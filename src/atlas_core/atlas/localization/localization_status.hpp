@@ -50,6 +50,10 @@ class StatusKeeper {
 
   void innovation(const InnovationRecord& record, const char* source);
   void fixTaken(Stamp stamp, Receivers::Use receiver);
+  /// Fixes are being taken: not coasting, not aligning.
+  [[nodiscard]] bool fixed(Stamp stamp) const {
+    return stateAt(stamp) == LocalizationStatus::State::kRunning;
+  }
   [[nodiscard]] bool positioned() const { return positioned_; }
   /// The filter's answer to a sample; counts jumps.
   void answer(Stamp stamp, const std::optional<Odometry>& odometry);

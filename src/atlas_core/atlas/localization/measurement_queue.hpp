@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fixes and headings that wait for the IMU sample at or after them, in stamp order. A ring of fixed size: a
-// filter must not allocate while it runs.
+// Fixes, headings and heights that wait for the IMU sample at or after them, in stamp order. A ring of fixed
+// size: a filter must not allocate while it runs.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,10 +20,14 @@ class MeasurementQueue {
   struct Heading {
     double yaw_rad, variance;
   };
+  struct Height {
+    double z_map_m, variance;
+  };
   struct Entry {
     Stamp stamp = 0;
-    std::variant<Fix, Heading> measurement;
+    std::variant<Fix, Heading, Height> measurement;
     [[nodiscard]] bool isFix() const { return std::holds_alternative<Fix>(measurement); }
+    [[nodiscard]] bool isHeight() const { return std::holds_alternative<Height>(measurement); }
   };
 
   [[nodiscard]] bool empty() const { return count_ == 0; }

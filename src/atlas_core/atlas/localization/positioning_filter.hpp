@@ -49,7 +49,7 @@ void validate(const PositioningParams& params);
 /// What a measurement said against the prediction.
 struct InnovationRecord {
   Stamp stamp = 0;
-  const char* source = "";  ///< "fix", "heading", "wheels", "standing", "not turning", "up"
+  const char* source = "";  ///< "fix", "heading", "wheels", "standing", "not turning", "up", "pressure"
   int rows = 0;             ///< components in use
   Eigen::Vector3d innovation = Eigen::Vector3d::Zero();  ///< m, rad, m/s or rad/s
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();       ///< square roots of the diagonal of S
@@ -76,6 +76,8 @@ class PositioningFilter {
   virtual void update(Stamp stamp, const Eigen::Vector3d& p_map_antenna, const Eigen::Matrix3d& R_m2) = 0;
   /// yaw of the imu x axis in map. Takes effect with the next IMU sample, at its own stamp.
   virtual void updateHeading(Stamp stamp, double yaw_rad, double variance_rad2) = 0;
+  /// Height of the imu in map by air pressure; a filter that does not use it ignores it.
+  virtual void updateHeight(Stamp /*stamp*/, double /*z_map_m*/, double /*variance_m2*/) {}
   /// Propagates to the sample's stamp; the odometry at that stamp, or nullopt while position, velocity,
   /// attitude or heading is unknown.
   virtual std::optional<Odometry> propagate(const ImuSample& sample) = 0;
