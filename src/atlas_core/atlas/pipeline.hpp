@@ -2,7 +2,8 @@
 // The whole data path in order: the first file to read.
 //
 //   imu/data, gnss/fix, gnss/heading,
-//   imu/gnss/fix (second receiver)   -> localization -> odometry
+//   imu/gnss/fix (second receiver),
+//   imu/pressure (if asked for)      -> localization -> odometry
 //   <lidar>/points, odometry         -> deskew       -> <lidar>/batches
 //   <lidar>/batches                  -> aggregate    -> cloud
 //   <lidar>/batches, odometry        -> obstacles    -> obstacles
@@ -83,6 +84,10 @@ StageFactory bindLocalization(Bus& bus, const LocalizationParams& params) {
   if (params.receivers.second_receiver) {
     bus.template input<S, GnssFix>(S::kSecondFix, "imu/gnss/fix",
                                    [](S& s, const GnssFix& fix) { s.pushSecond(fix); });
+  }
+  if (params.barometer.barometer) {
+    bus.template input<S, ScalarSample>(S::kPressure, "imu/pressure",
+                                        [](S& s, const ScalarSample& pressure) { s.pushPressure(pressure); });
   }
   const auto odometry = bus.template output<Odometry>("odometry");
   const auto anchor = bus.template output<Anchor>("anchor");

@@ -43,6 +43,12 @@ struct MessageOf<atlas::GnssHeading> {
   static Message to(const atlas::GnssHeading& value) { return toMsg(value); }
   static atlas::Outcome<atlas::GnssHeading> from(const Message& message) { return headingFromMsg(message); }
 };
+/// Pressures: the only plain numbers that a stage takes from a topic.
+template <>
+struct MessageOf<atlas::ScalarSample> {
+  using Message = sensor_msgs::FluidPressure;
+  static atlas::Outcome<atlas::ScalarSample> from(const Message& message) { return fromMsg(message); }
+};
 template <>
 struct MessageOf<atlas::Anchor> {
   using Message = sensor_msgs::NavSatFix;

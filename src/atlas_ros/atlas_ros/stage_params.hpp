@@ -27,6 +27,9 @@ void readParams(Reader& reader, atlas::LocalizationParams& p) {
   reader.readOptional("second_gnss_horizontal_sigma_m", r.second_gnss_horizontal_sigma_m);
   reader.readOptional("second_gnss_vertical_sigma_m", r.second_gnss_vertical_sigma_m);
   reader.readOptional("second_gnss_error_time_s", r.second_gnss_error_time_s);
+  reader.readOptional("barometer", p.barometer.barometer);
+  reader.readOptional("barometer_sigma_m", p.barometer.barometer_sigma_m);
+  reader.readOptional("barometer_error_time_s", p.barometer.barometer_error_time_s);
   reader.readOptional("accelerometer_range_mps2", p.imu_guard.accelerometer_range_mps2);
   reader.readOptional("gyroscope_range_radps", p.imu_guard.gyroscope_range_radps);
   reader.readOptional("imu_frozen_after_s", p.imu_guard.frozen_after_s);
