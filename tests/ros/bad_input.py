@@ -5,6 +5,7 @@ spoilt on purpose. Each must be counted under its reason in the diagnostics and 
 the position must stay where it is, and accelerations in g must end the run in words."""
 import math
 import os
+import random
 import sys
 import time
 
@@ -22,6 +23,7 @@ import positioning_from_topics as drive
 BAD_FIX = {40: "zero", 50: "nowhere", 60: "outlier", 65: "jump", 70: "duplicate"}  # by the index of the fix, 10 a second
 SATURATED, REBOUND = range(1000, 1004), range(1004, 1008)  # of the IMU, 100 a second: a blow that ends at the range limit
 RANGE_MPS2 = 39.2
+METRES_PER_DEG = 111.2e3
 GAP = range(1200, 1230)
 LATE = 1400  # this sample comes after the next one
 
@@ -86,6 +88,10 @@ class BadInput(drive.PositioningFromTopics):
 
     def fixes(self, index):
         message = self.fix_message(index)
+        noise = random.Random(index)  # fixes as good as they say, not better
+        message.latitude += noise.gauss(0, drive.GNSS_SIGMA_M) / METRES_PER_DEG
+        message.longitude += noise.gauss(0, drive.GNSS_SIGMA_M) / METRES_PER_DEG / math.cos(math.radians(drive.LATITUDE_DEG))
+        message.altitude += noise.gauss(0, drive.GNSS_SIGMA_M)
         kind = BAD_FIX.get(index)
         if kind == "zero":
             message.position_covariance = [0.0] * 9
