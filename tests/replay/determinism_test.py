@@ -8,7 +8,7 @@ usage (inside the workspace's environment): determinism_test.py --junit FILE [--
 import subprocess
 import sys
 
-from whole_run import LIMIT_S, WholeRun, run
+from whole_run import LIMIT_S, WholeRun, find_program, hashes, run
 
 
 class Determinism(WholeRun):
@@ -37,6 +37,26 @@ class Determinism(WholeRun):
     def test_a_offline_from_the_record(self):
         self.replay_offline(["--record", self.record], self.folder / "offline_record")
         self.check(self.folder / "offline_record")
+
+    def test_a_smoothed_in_two_passes(self):
+        """From the bag, again, and from the record; without pictures, which do not depend on the second pass being one."""
+        found = []
+        light = self.folder / "position.bag"
+        topics = "imu/data,gnss/fix,gnss/heading,lidar_left/points"
+        subprocess.run([find_program("record_to_bag"), self.record, "-o", light, "--force", "--topics", topics], check=True,
+                       timeout=LIMIT_S)
+        for name, source in (("first", ["--bag", light]), ("again", ["--bag", light]), ("record", ["--record", self.record])):
+            out = self.folder / ("smoothed_" + name)
+            self.replay_offline([*source, "--smooth"], out)
+            self.assertTrue(self.summary(out)["complete"])
+            found.append(hashes(out))
+        self.assertEqual(found[0], found[1])
+        same = [name for name in found[0] if name.startswith(("trajectory/", "deskewed/lidar_left/"))]
+        self.assertIn("trajectory/smoothed.tum", same)
+        self.assertGreater(len(same), 20)
+        self.assertEqual([name for name in same if found[2][name] != found[0][name]], [], "bag and record differ")
+        for name in ("trajectory/trajectory.tum", same[-1]):
+            self.assertNotEqual(found[0][name], self.reference[name], name + " is the filter's, not the smoother's")
 
     def test_b_nodelets_as_fast_as_they_go(self):
         self.check(self.launch("rate_0", "replay.launch", [f"bag:={self.bag}", "rate:=0"]))
