@@ -22,6 +22,10 @@ constexpr int kMostRecoveries = 2;
 constexpr double kMisfitMemory_s = 1.0, kMisfitGain_per_s = 0.5;  // doubt in fixes grows over seconds
 constexpr double kUsualMisfit = 1.5, kMostMisfit = 4.0;           // of mahalanobis_sq / 3, whose mean is 1
 constexpr double kMostFixScale = 1e4;
+constexpr double kHumbleFixes = 30.0;  // so many fixes show that they are better than they say
+constexpr double kHumbleMisfit = 0.3, kJustMisfit = 0.6;  // below: noise is smaller; above: it is not
+constexpr double kShrink_per_s = 1.0, kRegret = 6.0;      // doubt returns faster than trust
+constexpr double kLeastFixScale = 0.02;
 
 eskf::Inertial inertial(const ImuSample& s) { return {s.angular_velocity_radps, s.linear_acceleration_mps2}; }
 
@@ -163,7 +167,7 @@ void EskfFilter::stepTo(const ImuSample& sample, double gap_s) {
   const double dt = toSeconds(sample.stamp - current_->stamp);
   if (dt <= 0.0) return;
   if (!running_) {
-    start_.move(inertial(*current_), inertial(sample), dt);
+    start_.move(sample.stamp, inertial(*current_), inertial(sample), dt);
     current_ = sample;
     return;
   }
@@ -209,6 +213,7 @@ void EskfFilter::use(Stamp stamp, const MeasurementQueue::Fix& fix) {
   if (accepted) {
     fix_used_.add(counters_);
     last_used_fix_ = stamp;
+    slow_fix_m2_ = std::max(0.0, 1.0 - fix_scale_) * fix.R_m2;
     rejected_ = 0;
     if (last_mahalanobis_sq_ < 0.5 * params_.gate_mahalanobis_sq) recoveries_ = 0;
     return;
@@ -227,8 +232,23 @@ void EskfFilter::learnFixScale(Stamp stamp) {
   last_scaled_fix_ = stamp;
   fix_misfit_ +=
       std::min(1.0, dt / kMisfitMemory_s) * (std::min(last_mahalanobis_sq_ / 3.0, kMostMisfit) - fix_misfit_);
-  const double growth = std::exp(kMisfitGain_per_s * dt * (fix_misfit_ - kUsualMisfit));
-  fix_scale_ = std::clamp(fix_scale_ * growth, 1.0, kMostFixScale);
+  double gain = kMisfitGain_per_s * (fix_misfit_ - kUsualMisfit);
+  if (fix_scale_ < 1.0 && gain > 0.0) gain *= kRegret;
+  // Fixes that agree with the motion far better than they say err slowly: white noise of their stated size
+  // would waste what they tell about velocity and tilt (innovation-based adaptation, Mehra 1972). The slow
+  // part stays in the covariance that is reported.
+  mean_misfit_ += (std::min(last_mahalanobis_sq_ / 3.0, kMostMisfit) - mean_misfit_) / kHumbleFixes;
+  double least = std::min(fix_scale_, 1.0), most = std::max(fix_scale_, 1.0);
+  if (gain > 0.0) most = kMostFixScale;
+  if (fix_scale_ <= 1.0 && mean_misfit_ < kHumbleMisfit) {
+    gain = -kShrink_per_s;
+    least = kLeastFixScale;
+  } else if (fix_scale_ < 1.0 && gain <= 0.0) {
+    gain = kShrink_per_s * std::max(0.0, mean_misfit_ - kJustMisfit);
+  } else if (fix_scale_ > 1.0) {
+    least = 1.0;
+  }
+  fix_scale_ = std::clamp(fix_scale_ * std::exp(gain * dt), least, most);
 }
 
 void EskfFilter::recoverPosition(Stamp stamp, const Eigen::Vector3d& innovation_m) {

@@ -86,6 +86,8 @@ class EskfFilter : public PositioningFilter {
   int rejected_ = 0, recoveries_ = 0;  ///< in a row
   Stamp last_scaled_fix_ = 0;
   double fix_misfit_ = 1.0, fix_scale_ = 1.0;  ///< how much worse than they say the fixes are (variance)
+  double mean_misfit_ = 1.0;                   ///< of the last fixes
+  Eigen::Matrix3d slow_fix_m2_ = Eigen::Matrix3d::Zero();  ///< covariance of their slow error
   int still_blocks_ = 0;
   double still_force_spread_ = 0.0, still_gyro_spread_ = 0.0;  ///< seen while surely standing
   std::optional<ImuMonitor::Block> block_before_;

@@ -19,7 +19,7 @@ Odometry EskfFilter::odometry(double dt_s) const {
 
   using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
   Eigen::Map<Matrix6> pose(odometry.pose_covariance.data()), twist(odometry.twist_covariance.data());
-  pose.topLeftCorner<3, 3>() = P_.block<3, 3>(Index::kP, Index::kP);
+  pose.topLeftCorner<3, 3>() = P_.block<3, 3>(Index::kP, Index::kP) + slow_fix_m2_;
   pose.topRightCorner<3, 3>() = P_.block<3, 3>(Index::kP, Index::kTheta);
   pose.bottomLeftCorner<3, 3>() = P_.block<3, 3>(Index::kTheta, Index::kP);
   pose.bottomRightCorner<3, 3>() = P_.block<3, 3>(Index::kTheta, Index::kTheta);

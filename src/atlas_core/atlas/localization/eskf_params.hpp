@@ -9,12 +9,12 @@ namespace atlas {
 struct EskfParams {
   double accelerometer_noise_mps2_sqrt_hz = 8e-4;  ///< least spectral density
   double gyroscope_noise_radps_sqrt_hz = 1.75e-4;  ///< same
-  double vibration_share = 0.3;           ///< part of the white noise seen between samples that integrates
-  double accelerometer_bias_mps2 = 0.06;  ///< standard deviation before any estimate
-  double gyroscope_bias_radps = 0.005;    ///< same
+  double vibration_share = 0.3;          ///< part of the white noise seen between samples that integrates
+  double accelerometer_bias_mps2 = 0.2;  ///< standard deviation before any estimate
+  double gyroscope_bias_radps = 0.01;    ///< same; a vehicle that stood has measured it
   double accelerometer_bias_walk_mps3_sqrt_hz = 3e-5;  ///< random walk
   double gyroscope_bias_walk_radps2_sqrt_hz = 7e-6;    ///< random walk
-  double mount_sigma_rad = 0.03;                       ///< angle between imu x and the direction of driving
+  double mount_sigma_rad = 0.1;                        ///< angle between imu x and the direction of driving
   double lever_arm_sigma_m = 0.0;                      ///< 0: the lever arm is right
   double gnss_delay_sigma_s = 0.0;                     ///< 0: the fixes' stamps are right
   double slip_sigma_mps = 0.03;       ///< sideways and vertical velocity of the rear axle while driving ...
