@@ -3,6 +3,8 @@
 // outages, outliers, gaps, order of arrival, and its smoother.
 #include <gtest/gtest.h>
 
+#include <string_view>
+
 #include "atlas/localization/eskf_history.hpp"
 #include "stage_run.hpp"
 
@@ -231,6 +233,30 @@ TEST(EskfFilter, OnlyAFilterWithSmootherRecords) {
   LocalizationStage stage{LocalizationParams{}};
   eskf::History history;
   EXPECT_THROW(stage.record(&history), std::invalid_argument);
+}
+
+TEST(EskfFilter, FixesThatErrSlowlyCountMoreButTheirErrorIsReported) {
+  Simulation s = simulate(3, 45.0);
+  constexpr double kStated_sq = 1.5 * 1.5;  // said of fixes whose noise is 2 cm
+  for (GnssFix& fix : s.recording.fixes)
+    fix.covariance_enu_m2 = {kStated_sq, 0.0, 0.0, 0.0, kStated_sq, 0.0, 0.0, 0.0, kStated_sq};
+  LocalizationStage stage(eskfParams());
+  StageRun run;
+  listen(stage, run);
+  double sigma_m = 0.0;
+  stage.on_innovation = [&](const InnovationRecord& record) {
+    if (std::string_view(record.source) == "fix") sigma_m = record.sigma.x();
+  };
+  stage.push(s.recording.imu.front().stamp, rigWith(s.drive.lever_arm_imu));
+  stage.finish(LocalizationStage::kTfStatic);
+  for (const GnssFix& fix : s.recording.fixes) stage.push(fix);
+  stage.finish(LocalizationStage::kGnssFix);
+  stage.finish(LocalizationStage::kGnssHeading);
+  for (const ImuSample& sample : s.recording.imu) stage.push(sample);
+  stage.finish(LocalizationStage::kImu);
+  ASSERT_FALSE(run.odometry.empty());
+  EXPECT_LT(sigma_m, 0.5);
+  EXPECT_GT(std::sqrt(run.odometry.back().pose_covariance[0]), 1.3);
 }
 
 }  // namespace
