@@ -33,6 +33,10 @@ void readParams(Reader& reader, FrustumWriterParams& p) {
 template <class Reader>
 void readParams(Reader& reader, ThermalWriterParams& p) {
   reader.read("thermal_camera", p.thermal_camera);
+  reader.readOptional("radiometric", p.dataset.radiometric);
+  reader.readOptional("split_block_s", p.dataset.split_block_s);
+  reader.readOptional("contact_sheet_frames", p.dataset.contact_sheet_frames);
+  reader.readOptional("contact_sheet_seed", p.dataset.contact_sheet_seed);
 }
 template <class Reader>
 void readParams(Reader& reader, OverlayWriterParams& p) {

@@ -1,51 +1,48 @@
 // SPDX-License-Identifier: MIT
 // The thermal dataset: images, YOLO labels, COCO annotations, the detections' own row format, a split by
-// blocks of time. Only thermal frames that some RGB image chose are part of it. thermal/{images,labels}/<IR
-// index, 6 digits>.{png,txt}, thermal/annotations.json, thermal/detections.txt, thermal/train.txt,
-// thermal/val.txt
+// blocks of time, 16-bit temperatures, a contact sheet, a card. Only thermal frames that some RGB image chose
+// are part of it. Below thermal/: {images,labels,radiometric}/<IR index, 6 digits>.{png,txt,png},
+// annotations.json, detections.txt, {train,val,test}.txt, data.yaml, card.json, README.md, contact_sheet.png
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "atlas/sensor/products.hpp"
-#include "files/output_file.hpp"
+#include "files/thermal_dataset.hpp"
 
 namespace atlas {
 
 class ThermalWriter {
  public:
-  explicit ThermalWriter(std::filesystem::path out);
+  ThermalWriter(const ThermalDatasetParams& params, const std::filesystem::path& out);
 
   /// Parts of one frame are joined by their equal stamps; each comes in stamp order.
   void add(const TemperatureRange& range);
   void add(const ImagePtr& image);
+  void add(const CameraInfo& info);
   void add(const ProjectedDetections& projected);
   /// Completes annotations and lists; nothing happens a second time.
   void close();
-  /// Chosen frames whose picture never came.
-  [[nodiscard]] std::uint64_t withoutImage() const { return without_image_; }
+  /// What was left out of the dataset, in words.
+  [[nodiscard]] const std::map<std::string, std::uint64_t>& dropped() const { return dataset_.dropped(); }
+  [[nodiscard]] std::uint64_t frames() const { return dataset_.frames(); }
 
  private:
   struct Frame {
     std::optional<TemperatureRange> range;
     ImagePtr image;
+    std::optional<cv::Size> size;  ///< that its labels were made for
     std::optional<ProjectedDetections> projected;
   };
   void writeComplete();
   void write(const Frame& frame);
 
-  std::filesystem::path folder_;
+  ThermalDataset dataset_;
   std::map<Stamp, Frame> waiting_;
-  std::unique_ptr<OutputFile> rows_;
-  std::unique_ptr<OutputFile> train_, val_;
-  std::string coco_images_, coco_annotations_;  ///< about 150 bytes a label: 10 MB an hour
-  std::uint64_t next_annotation_ = 1;
-  std::uint64_t without_image_ = 0;
   bool closed_ = false;
 };
 

@@ -125,8 +125,9 @@ void FrustumWriterStage::push(std::size_t camera, const Frustums& frustums) {
   });
 }
 
-ThermalWriterStage::ThermalWriterStage(const std::filesystem::path& out)
-    : Stage("thermal_writer", {"temperature_range", "image", "projected_detections"}), writer_(out) {}
+ThermalWriterStage::ThermalWriterStage(const ThermalWriterParams& params, const std::filesystem::path& out)
+    : Stage("thermal_writer", {"temperature_range", "image", "camera_info", "projected_detections"}),
+      writer_(params.dataset, out) {}
 ThermalWriterStage::~ThermalWriterStage() {
   closeQuietly("thermal_writer", [this] { writer_.close(); });
 }
@@ -136,11 +137,20 @@ void ThermalWriterStage::push(const TemperatureRange& range) {
 void ThermalWriterStage::push(const ImagePtr& image) {
   enqueue(kImage, image->stamp, [this, image] { writer_.add(image); });
 }
+void ThermalWriterStage::push(const CameraInfo& info) {
+  enqueue(kInfo, info.stamp, [this, info] { writer_.add(info); });
+}
 void ThermalWriterStage::push(const ProjectedDetections& projected) {
   enqueue(kProjected, projected.detections.stamp, [this, projected] {
     writer_.add(projected);
     counters_.add("projected detections", projected.detections.boxes.size());
   });
+}
+
+void ThermalWriterStage::onEnd() {
+  writer_.close();
+  counters_.add("frames", writer_.frames());
+  for (const auto& [what, count] : writer_.dropped()) counters_.add("skipped " + what, count);
 }
 
 ObstacleWriterStage::ObstacleWriterStage(const std::filesystem::path& out)

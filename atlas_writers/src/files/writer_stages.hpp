@@ -39,6 +39,7 @@ struct FrustumWriterParams {
 };
 struct ThermalWriterParams {
   std::string thermal_camera = "camera_ir";
+  ThermalDatasetParams dataset;
 };
 
 struct WriterParams {
@@ -120,15 +121,16 @@ class FrustumWriterStage : public Stage {
 
 class ThermalWriterStage : public Stage {
  public:
-  enum Input : std::size_t { kTemperature, kImage, kProjected };
-  explicit ThermalWriterStage(const std::filesystem::path& out);
+  enum Input : std::size_t { kTemperature, kImage, kInfo, kProjected };
+  ThermalWriterStage(const ThermalWriterParams& params, const std::filesystem::path& out);
   ~ThermalWriterStage() override;
   void push(const TemperatureRange& range);
   void push(const ImagePtr& image);
+  void push(const CameraInfo& info);
   void push(const ProjectedDetections& projected);
 
  private:
-  void onEnd() override { writer_.close(); }
+  void onEnd() override;
   ThermalWriter writer_;
 };
 
@@ -175,14 +177,17 @@ StageFactory bindFrustumWriter(Bus& bus, const FrustumWriterParams& params, cons
 template <class Bus>
 StageFactory bindThermalWriter(Bus& bus, const ThermalWriterParams& params, const std::string& out) {
   using S = ThermalWriterStage;
+  validate(params.dataset);
   const std::string& camera = params.thermal_camera;
   bus.template input<S, TemperatureRange>(S::kTemperature, camera + "/temperature_range",
                                           [](S& s, const TemperatureRange& range) { s.push(range); });
   bus.template input<S, ImagePtr>(S::kImage, camera + "/image",
                                   [](S& s, const ImagePtr& image) { s.push(image); });
+  bus.template input<S, CameraInfo>(S::kInfo, camera + "/camera_info",
+                                    [](S& s, const CameraInfo& info) { s.push(info); });
   bus.template input<S, ProjectedDetections>(S::kProjected, camera + "/projected_detections",
                                              [](S& s, const ProjectedDetections& p) { s.push(p); });
-  return [=] { return std::make_unique<S>(out); };
+  return [=] { return std::make_unique<S>(params, out); };
 }
 template <class Bus>
 StageFactory bindObstacleWriter(Bus& bus, const std::string& out) {

@@ -31,6 +31,7 @@ std::string cocoImage(const CocoImage& image) {
                 {"width", image.width},
                 {"height", image.height},
                 {"stamp_ns", image.stamp}};
+  if (!image.split.empty()) entry["split"] = image.split;
   if (image.temperature) {
     entry["temperature_min_degc"] = image.temperature->minimum_degc;
     entry["temperature_max_degc"] = image.temperature->maximum_degc;
@@ -44,9 +45,11 @@ std::optional<std::string> cocoAnnotation(std::uint64_t id, const CocoImage& ima
                                           const Detection2d& detection) {
   const auto box = normalized(detection, image.width, image.height);
   if (!box) return std::nullopt;
-  const double width = rounded(box->width * image.width), height = rounded(box->height * image.height);
+  // Edges are rounded, not sizes: a box that ends with the image still does.
   const double x = rounded((box->center_x - 0.5 * box->width) * image.width);
   const double y = rounded((box->center_y - 0.5 * box->height) * image.height);
+  const double width = rounded(rounded((box->center_x + 0.5 * box->width) * image.width) - x);
+  const double height = rounded(rounded((box->center_y + 0.5 * box->height) * image.height) - y);
   const json entry = {{"id", id},
                       {"image_id", image.id},
                       {"category_id", detection.class_id},

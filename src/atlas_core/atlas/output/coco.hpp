@@ -19,6 +19,7 @@ struct CocoImage {
   int width = 0, height = 0;
   Stamp stamp = 0;
   std::optional<TemperatureRange> temperature;  ///< of grey 0 and grey 255
+  std::string split;                            ///< "train", "val", "test"; may be empty
 };
 
 /// `{"categories":[...],"info":{...},"images":[`
@@ -26,7 +27,8 @@ std::string cocoBegin(const std::string& description);
 std::string cocoImage(const CocoImage& image);
 /// `],"annotations":[`
 std::string cocoMiddle();
-/// bbox is [x, y, width, height] in px, clipped to the image; nullopt when nothing of the box is inside.
+/// bbox is [x, y, width, height] in px from the upper left corner of the image (half a pixel before the
+/// centre of its first one), clipped to the image; nullopt when nothing of the box is inside.
 std::optional<std::string> cocoAnnotation(std::uint64_t id, const CocoImage& image,
                                           const Detection2d& detection);
 /// `]}`

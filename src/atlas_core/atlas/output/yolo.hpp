@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // YOLO labels: one line `class cx cy w h` per box, x and w divided by the image's width, y and h by its
-// height, all in [0, 1].
+// height, all in [0, 1]. Boxes are in pixels whose centres are whole numbers, so the left edge of the image
+// is -1/2 and its right edge width - 1/2: a share is (u + 1/2) / width.
 #pragma once
 
 #include <optional>
