@@ -166,6 +166,17 @@ TEST(Clusters, TheLowRestOfAWallBelongsToIt) {
   EXPECT_EQ(findClusters(points, kVehicle, {}).size(), 1U);
 }
 
+TEST(Clusters, ACabIsNoObjectBeforeItsLorry) {
+  // bonnet below, cab above it: neither is tall alone, together they are taller than people and cars
+  std::vector<LidarPoint> points;
+  addWall(points, 8.0, 0.0, 6.0);  // the side of the load
+  for (double x = 6.35; x <= 7.6; x += 0.1) {
+    for (double z = 0.3; z <= 1.2; z += 0.2) points.push_back(at(x, 8.0, z));
+    for (double z = 1.2; z <= 2.7; z += 0.2) points.push_back(at(x + 0.3, 8.3, z));
+  }
+  EXPECT_EQ(findClusters(points, kVehicle, {}).size(), 1U);
+}
+
 TEST(Clusters, BetweenAllPairsWithTheGapsAndWithTheGapsAndAColumn) {
   std::mt19937 random(11);
   const ClusterParams params = plain(0.4, 0.3);

@@ -194,6 +194,13 @@ class ColumnClusters {
     }
   }
 
+  [[nodiscard]] bool mayBeObject(const Piece& whole) const {
+    const float diagonal = std::hypot(whole.x_max - whole.x_min, whole.y_max - whole.y_min);
+    return static_cast<double>(diagonal) <= params_.object_m &&
+           static_cast<double>(whole.z_max - whole.z_min) <= params_.tall_m &&
+           static_cast<int>(whole.points) >= params_.fewest_points;
+  }
+
   /// Low clusters at a tall one are a rest of it, unless they may be an object.
   void joinLinks() {
     sets_ = DisjointSets(pieces_.size());
@@ -209,10 +216,7 @@ class ColumnClusters {
     for (const Link& link : links_) {
       if (is_tall_[link.a] == is_tall_[link.b]) continue;
       const Piece& low = whole[sets_.find(is_tall_[link.a] != 0 ? link.b : link.a)];
-      const float diagonal = std::hypot(low.x_max - low.x_min, low.y_max - low.y_min);
-      if (static_cast<double>(diagonal) > params_.object_m ||
-          static_cast<int>(low.points) < params_.fewest_points)
-        rests.push_back(link);
+      if (!mayBeObject(low)) rests.push_back(link);
     }
     for (const Link& link : rests) sets_.unite(link.a, link.b);
   }

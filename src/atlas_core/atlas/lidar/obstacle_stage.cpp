@@ -60,7 +60,7 @@ std::vector<LidarPoint> nearPoints(const std::vector<BatchedSweepPtr>& sweeps,
   return near;
 }
 
-constexpr double kObjectLength_m = 7.0;  ///< boxes longer or wider than this are walls
+constexpr double kObjectLength_m = 8.0;  ///< boxes longer or wider than this are walls
 constexpr double kObjectWidth_m = 3.0;
 constexpr double kRoofGap_m = 0.8;  ///< rings apart on roofs and bonnets seen at a grazing angle
 
