@@ -145,8 +145,9 @@ def kitti(folder, random, sigma_m=2.0, rate_hz=1.0, heading_deg=None):
 
 
 def husky(root):
-    """Husky robot, consumer GNSS; the IMU is mounted with y up, so forward-left-up is x, -z, y. The heading is that of the IMU's
-    compass; what lies between its x axis and the course (mount, declination) is not documented and taken from the recording."""
+    """Husky robot, consumer GNSS. How the IMU is mounted is not documented: y is up (gravity), -z forward and -x left (they agree
+    with the acceleration and the centripetal acceleration of the wheels' odometry). The heading is that of its compass; the
+    angle from its x axis to the course (mount, declination) is taken from this very recording."""
     import rosbag
     compass_to_course_deg, compass_sigma_deg = 144.0, 10.0
     imu, gnss, yaw_deg = [], [], None
@@ -155,7 +156,7 @@ def husky(root):
             kind, stamp = getattr(message, "_type", ""), message.header.stamp.to_nsec()
             if kind == "sensor_msgs/Imu":
                 a, w, q = message.linear_acceleration, message.angular_velocity, message.orientation
-                imu.append((stamp, a.x, -a.z, a.y, w.x, -w.z, w.y))
+                imu.append((stamp, -a.z, -a.x, a.y, -w.z, -w.x, w.y))
                 yaw_deg = math.degrees(math.atan2(2 * (q.x * q.y + q.w * q.z), 1 - 2 * (q.y**2 + q.z**2))) - compass_to_course_deg
             elif kind == "sensor_msgs/NavSatFix" and message.status.status >= 0 and yaw_deg is not None:
                 c = message.position_covariance
