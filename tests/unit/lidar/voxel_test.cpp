@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <random>
@@ -79,6 +80,26 @@ TEST(VoxelFilter, SameAsAMap) {
 TEST(VoxelFilter, RefusesAnEdgeOfZero) {
   EXPECT_THROW(VoxelFilter(0.0, VoxelPoint::kFirst), std::invalid_argument);
   EXPECT_TRUE(voxelFiltered({}, 0.5).empty());
+}
+
+// The filter remembers the last voxel of each ring (modulo 128): that must not show.
+TEST(VoxelFilter, RingsDoNotChangeWhatIsKept) {
+  std::vector<LidarPoint> points;
+  for (int i = 0; i < 20000; ++i) {
+    const auto wave = static_cast<float>(std::sin(0.37 * i));
+    points.push_back({5.0F * wave, 0.001F * static_cast<float>(i), wave * wave, static_cast<float>(i), 0,
+                      static_cast<std::uint16_t>(i * 7 % 300), 0});
+  }
+  std::vector<LidarPoint> without_rings = points;
+  for (LidarPoint& p : without_rings) p.ring = 0;
+  for (const VoxelPoint keep : {VoxelPoint::kFirst, VoxelPoint::kCentroid}) {
+    const auto a = voxelFiltered(points, 0.5, keep), b = voxelFiltered(without_rings, 0.5, keep);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].intensity, b[i].intensity);
+      EXPECT_EQ(a[i].x, b[i].x);
+    }
+  }
 }
 
 }  // namespace

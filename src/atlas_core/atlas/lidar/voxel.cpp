@@ -16,7 +16,9 @@ VoxelFilter::VoxelFilter(double edge_m, VoxelPoint keep, std::size_t expected)
 void VoxelFilter::add(const LidarPoint& point) {
   const std::optional<VoxelKey> key = voxelOf(point.x, point.y, point.z, edge_m_);
   if (!key) return;
-  const std::uint32_t voxel = index_.insert(*key);
+  Last& last = last_[point.ring % last_.size()];
+  if (last.voxel == VoxelIndex::kNone || !(last.key == *key)) last = {*key, index_.insert(*key)};
+  const std::uint32_t voxel = last.voxel;
   if (voxel == points_.size()) points_.push_back(point);
   if (keep_ == VoxelPoint::kFirst) return;
   if (voxel == sums_.size()) sums_.emplace_back();

@@ -3,6 +3,7 @@
 // always.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -46,8 +47,14 @@ class VoxelFilter {
     double x = 0, y = 0, z = 0, intensity = 0;
     std::uint32_t count = 0;
   };
+  /// The voxel of the last point of a laser: the next one mostly lies in the same.
+  struct Last {
+    VoxelKey key;
+    std::uint32_t voxel = VoxelIndex::kNone;
+  };
   double edge_m_;
   VoxelPoint keep_;
+  std::array<Last, 128> last_{};  ///< by ring, modulo
   VoxelIndex index_;
   std::vector<LidarPoint> points_;  ///< first of each voxel
   std::vector<Sum> sums_;           ///< kCentroid only
