@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "atlas/lidar/batching.hpp"
 #include "atlas/lidar/deskew_trial.hpp"
 #include "atlas/lidar/range_gate.hpp"
 #include "atlas/output/pcd.hpp"
@@ -43,8 +44,11 @@ Spread spreadOf(const std::vector<double>& values) {
   return {sum / n, n > 1 ? std::sqrt(squares / (n - 1) / n) : NAN};
 }
 
-/// Qualities of one window of sweeps, by way.
-using Window = std::map<DeskewWay, MapQuality>;
+/// Qualities of one window of sweeps, by way; `earlier` and `later`: per point, with all stamps moved by the
+/// duration of a sweep, which is what mistaking its start for its end, or its end for its start, amounts to.
+struct Window : std::map<DeskewWay, MapQuality> {
+  double earlier = 0, later = 0;  ///< mean entropy
+};
 constexpr DeskewWay kWays[] = {DeskewWay::kPerPoint, DeskewWay::kBatches100, DeskewWay::kNone,
                                DeskewWay::kReversed};
 
@@ -69,6 +73,13 @@ std::optional<Window> judge(const std::vector<SweepPtr>& sweeps, const Arguments
     if (!quality || quality->neighbourhoods == 0) return std::nullopt;
     window[way] = *quality;
   }
+  const auto shifted = [&](Duration shift) {
+    const auto quality = qualityOf(sweeps, DeskewWay::kPerPoint, trajectory, T_imu_lidar, params, shift);
+    return quality ? quality->mean_entropy : std::numeric_limits<double>::quiet_NaN();
+  };
+  const SweepSpan span = *spanOf(*sweeps.front());
+  window.earlier = shifted(-(span.last - span.first));
+  window.later = shifted(span.last - span.first);
   return window;
 }
 
@@ -143,6 +154,29 @@ void printWindows(const std::string& topic, const std::vector<Window>& windows,
   }
 }
 
+/// Which moment of a sweep the stamps mark, as the sharpness of the map has it.
+void printStamps(const std::vector<Window>& windows, nlohmann::ordered_json& json) {
+  std::vector<double> earlier, later;
+  for (const Window& window : windows) {
+    const double recorded = window.at(DeskewWay::kPerPoint).mean_entropy;
+    if (std::isfinite(window.earlier)) earlier.push_back(window.earlier - recorded);
+    if (std::isfinite(window.later)) later.push_back(window.later - recorded);
+  }
+  const auto verdict = [](const std::vector<double>& values) {
+    const Spread spread = spreadOf(values);
+    const bool sure = std::abs(spread.mean) > 2.0 * spread.error;
+    return !sure               ? "no difference seen"
+           : spread.mean > 0.0 ? "fits worse"
+                               : "fits BETTER: check --scan-stamp";
+  };
+  for (const auto& [name, values] : {std::pair{"earlier", earlier}, std::pair{"later", later}}) {
+    const Spread spread = spreadOf(values);
+    std::printf("stamps one sweep %s: entropy %+.3f +- %.3f, %s\n", name, spread.mean, spread.error,
+                verdict(values));
+    json[std::string("stamps_one_sweep_") + name] = {spread.mean, spread.error};
+  }
+}
+
 MapQuality ofCloud(const std::string& path, const MapQualityParams& params) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
@@ -169,7 +203,10 @@ void judgeRecording(Arguments arguments, nlohmann::ordered_json& json) {
   const PositionedRun run = atlas_loader::positionRun(positions, params, source);
   if (run.trajectory.empty()) throw std::runtime_error("no pose: position or heading never known");
   const Results results = measure(arguments, run);
-  for (const auto& [topic, windows] : results.windows) printWindows(topic, windows, json["windows"]);
+  for (const auto& [topic, windows] : results.windows) {
+    printWindows(topic, windows, json["windows"]);
+    printStamps(windows, json["windows"][topic]);
+  }
   for (const auto& [topic, count] : results.passed_over)
     std::printf("%s: %zu windows passed over (standing, or no pose)\n", topic.c_str(), count);
   if (results.errors) results.errors->print(json["errors"]);
