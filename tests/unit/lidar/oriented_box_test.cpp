@@ -87,12 +87,16 @@ TEST(OrientedBox, W21_EveryPointIsInsideItsBox) {
 }
 
 TEST(OrientedBox, WhatIsSeenBehindTheOutlineDoesNotTurnIt) {
-  // returns from seats and the far window frame lie on a line across the car
+  // many returns from a seat in the far corner, where the sides are hidden
   const Eigen::Vector3d center(14.0, 9.0, 0.0);
   for (int yaw_deg = -80; yaw_deg <= 90; yaw_deg += 34) {
     const double yaw = yaw_deg * M_PI / 180.0;
     auto points = twoSides(yaw, center, 0.02, 3);
-    for (double s = -1.0; s <= 1.0; s += 0.004) points.push_back(placed(1.2 * s, 0.75 * s, 0.4, yaw, center));
+    for (double along = 1.2; along <= 1.8; along += 0.01) {
+      for (double across = 0.2; across <= 0.7; across += 0.01) {
+        if (across < 0.2 + 0.8 * (along - 1.2)) points.push_back(placed(along, across, 0.4, yaw, center));
+      }
+    }
     const LidarPoint eye = placed(-12.0, -9.0, 1.0, yaw, center);
     const Obstacle box = *fitBox(points, all(points), {eye.x, eye.y, eye.z});
     EXPECT_LT(angleBetweenBoxes(box.yaw_rad, yaw), 2.0 * M_PI / 180.0) << yaw_deg;
