@@ -125,7 +125,7 @@ def kitti_rows(folder):
 
 
 def kitti(folder, random, sigma_m=2.0, rate_hz=1.0, heading_deg=None):
-    """The oxts stream degraded on purpose: fixes of `rate_hz` with white noise; a heading with noise of `heading_deg`, or none."""
+    """The oxts stream degraded on purpose: fixes of `rate_hz` with white noise, a heading with noise of `heading_deg` or none."""
     imu, gnss, reference, enu, due = [], [], [], None, None
     for stamp, v in kitti_rows(folder):
         if imu and stamp <= imu[-1][0]:
