@@ -182,9 +182,11 @@ StageFactory bindDepth(Bus& bus, const DepthParams& params) {
   inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
   inputs<S, CameraInfo>(bus, S::kFirstLidar + params.lidars.size(), params.cameras, "/camera_info");
   const auto depth = outputs<DepthImagePtr>(bus, params.cameras, "/depth/image");
+  const auto confidence = outputs<DepthImagePtr>(bus, params.cameras, "/depth/confidence");
   return [=] {
     auto stage = std::make_unique<S>(params);
     stage->on_depth = depth;
+    stage->on_confidence = confidence;
     return stage;
   };
 }

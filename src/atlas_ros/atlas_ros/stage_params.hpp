@@ -93,7 +93,10 @@ template <class Reader>
 void readParams(Reader& reader, atlas::CameraLidarParams& p) {
   reader.read("cameras", p.cameras);
   reader.read("lidars", p.lidars);
+  reader.read("method", p.method);
   reader.read("window_s", p.window_s);
+  reader.read("look_ahead_s", p.look_ahead_s);
+  reader.read("recent_s", p.recent_s);
   reader.read("max_depth_m", p.max_depth_m);
   reader.read("min_points", p.min_points);
   reader.read("object_depth_m", p.object_depth_m);
@@ -117,7 +120,12 @@ void readParams(Reader& reader, atlas::DepthParams& p) {
   reader.read("window_s", p.window_s);
   reader.read("min_depth_m", p.min_depth_m);
   reader.read("max_depth_m", p.max_depth_m);
-  reader.read("splat_px", p.splat_px);
+  reader.read("look_ahead_s", p.look_ahead_s);
+  reader.read("recent_s", p.recent_s);
+  reader.read("hide_occluded", p.hide_occluded);
+  reader.read("line_gap_deg", p.line_gap_deg);
+  reader.read("surface_step", p.surface_step);
+  reader.read("fill_gap_m", p.fill_gap_m);
   reader.read("max_pose_gap_s", p.max_pose_gap_s);
 }
 

@@ -15,6 +15,7 @@ CameraLidarParams params() {
   CameraLidarParams p;
   p.cameras = {"camera"};
   p.lidars = {"lidar"};
+  p.look_ahead_s = 0.0;
   return p;
 }
 
@@ -177,6 +178,45 @@ TEST(CameraLidarStage, arrivalOrderHasNoInfluence) {
   const std::string first = text(0);
   EXPECT_NE(first.find("frustums 14"), std::string::npos) << first;
   for (unsigned seed = 1; seed < 25; ++seed) EXPECT_EQ(text(seed), first) << seed;
+}
+
+// A plate of 1 m at 10 m in a box that is mostly wall: the paper's median is the wall.
+TEST(CameraLidarStage, methodsOfDistance) {
+  Inputs inputs;
+  auto points = wall(20.0, 12.0, 9.0, 0.1);
+  const auto plate = wall(10.0, 0.5, 0.5, 0.03);  // about as dense as the wall
+  points.insert(points.end(), plate.begin(), plate.end());
+  inputs.sweeps = {sweepOf(points, kStart - kMillisecond)};
+  inputs.detections = {detectionsOf({car(40, 30, 60, 50)})};
+  CameraLidarParams p = params();
+  CameraLidarStage foreground(p);
+  const Frustum found = answers(foreground, inputs)[0].frustums.at(0);
+  EXPECT_NEAR(found.distance_m, 10.0, 1e-5);
+  EXPECT_NEAR(found.corners[4].x() - found.corners[0].x(), 0.1, 1e-5) << "a plate has no depth";
+  p.method = "median";
+  CameraLidarStage median(p);
+  const Frustum paper = answers(median, inputs)[0].frustums.at(0);
+  EXPECT_NEAR(paper.distance_m, 20.0, 1e-5);
+  EXPECT_NEAR(paper.corners[4].x() - paper.corners[0].x(), 1.0, 1e-5);
+  p.method = "mean";
+  EXPECT_THROW(validate(p), std::invalid_argument);
+}
+
+// The sweep that ends 80 ms after the image was measured around it; the image waits for it, not for later
+// ones.
+TEST(CameraLidarStage, waitsForTheSweepThatWasUnderWay) {
+  Inputs inputs;
+  inputs.sweeps = {sweepOf(wall(20.0, 12.0, 9.0, 0.1), kStart - 100 * kMillisecond),
+                   sweepOf(wall(18.0, 12.0, 9.0, 0.1), kStart + 80 * kMillisecond),
+                   sweepOf(wall(16.0, 12.0, 9.0, 0.1), kStart + 101 * kMillisecond)};
+  inputs.detections = {detectionsOf({car(40, 30, 60, 50)})};
+  CameraLidarParams p = params();
+  p.look_ahead_s = 0.1;
+  p.recent_s = 0.09;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    CameraLidarStage stage(p);
+    EXPECT_NEAR(answers(stage, inputs, seed)[0].frustums.at(0).distance_m, 18.0, 1e-5) << seed;
+  }
 }
 
 TEST(CameraLidarStage, refusesBadParameters) {

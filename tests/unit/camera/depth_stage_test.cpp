@@ -20,7 +20,8 @@ DepthParams params(std::vector<std::string> cameras = {"camera"}) {
   DepthParams p;
   p.cameras = std::move(cameras);
   p.lidars = {"lidar"};
-  p.splat_px = 0;
+  p.fill_gap_m = 0.0;
+  p.look_ahead_s = 0.0;
   return p;
 }
 
@@ -91,10 +92,10 @@ TEST(DepthStage, W13_wallHasOneDepthEverywhere) {
 TEST(DepthStage, W18_nearObjectHidesFarWall) {
   for (const bool near_first : {true, false}) {
     Inputs inputs = standing();
-    const auto object = sweepOf(wall(5.0, 0.5, 0.5, 0.02), kStart - 100 * kMillisecond);
-    const auto back = sweepOf(wall(10.0, 8.0, 8.0, 0.05), kStart - 50 * kMillisecond);
-    inputs.sweeps = {near_first ? object : sweepOf(back->sweep->points, kStart - 100 * kMillisecond),
-                     near_first ? back : sweepOf(object->sweep->points, kStart - 50 * kMillisecond)};
+    const auto object = sweepOf(wall(5.0, 0.5, 0.5, 0.02), kStart - 40 * kMillisecond);
+    const auto back = sweepOf(wall(10.0, 8.0, 8.0, 0.05), kStart - 20 * kMillisecond);
+    inputs.sweeps = {near_first ? object : sweepOf(back->sweep->points, kStart - 40 * kMillisecond),
+                     near_first ? back : sweepOf(object->sweep->points, kStart - 20 * kMillisecond)};
     DepthStage stage(params());
     const cv::Mat depth = answers(stage, inputs)[0].image->depth;
     EXPECT_FLOAT_EQ(depth.at<float>(40, 50), 5.0F);
@@ -126,6 +127,57 @@ TEST(DepthStage, sweepsAfterTheImageAndBeforeTheWindowAreNotSeen) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     DepthStage stage(params());
     EXPECT_FLOAT_EQ(answers(stage, inputs, seed)[0].image->depth.at<float>(40, 50), 9.0F);
+  }
+}
+
+// A car has driven away from 6 m to 9 m while the window was filled, measured by lines 10 px apart.
+TEST(DepthStage, whatHasMovedAwayIsNotSeen) {
+  const auto car = [](double x, double shift) {
+    std::vector<LidarPoint> points;
+    for (int line = -3; line <= 3; ++line) {
+      for (int i = -30; i <= 30; ++i) points.push_back(point(x, 0.01 * i * x, (0.1 * line + shift) * x));
+    }
+    return points;
+  };
+  Inputs inputs = standing();
+  inputs.sweeps = {sweepOf(car(6.0, 0.0), kStart - 300 * kMillisecond),
+                   sweepOf(car(9.0, 0.05), kStart + 40 * kMillisecond)};
+  DepthParams p = params();
+  p.look_ahead_s = 0.1;
+  p.line_gap_deg = 7.0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    DepthStage stage(p);
+    const cv::Mat depth = answers(stage, inputs, seed)[0].image->depth;
+    EXPECT_FLOAT_EQ(depth.at<float>(45, 50), 9.0F);
+    EXPECT_TRUE(std::isnan(depth.at<float>(40, 50))) << depth.at<float>(40, 50);
+  }
+  p.hide_occluded = false;
+  DepthStage all(p);
+  EXPECT_FLOAT_EQ(answers(all, inputs)[0].image->depth.at<float>(40, 50), 6.0F);
+}
+
+TEST(DepthStage, confidenceComesWithEveryImage) {
+  Inputs inputs = standing();
+  inputs.sweeps = {sweepOf(wall(10.0, 3.0, 3.0, 0.3), kStart)};  // a point every 3 px
+  DepthParams p = params();
+  p.fill_gap_m = 0.5;
+  p.line_gap_deg = 3.0;
+  DepthStage stage(p);
+  std::vector<Answer> confidence;
+  stage.on_confidence = [&](std::size_t camera, const DepthImagePtr& image) {
+    confidence.push_back({camera, image});
+  };
+  const auto result = answers(stage, inputs);
+  ASSERT_EQ(confidence.size(), 1U);
+  EXPECT_EQ(confidence[0].image->stamp, kStart);
+  const cv::Mat &depth = result[0].image->depth, &sure = confidence[0].image->depth;
+  EXPECT_EQ(sure.at<float>(40, 50), 1.0F);
+  EXPECT_GT(sure.at<float>(40, 51), 0.0F);
+  EXPECT_LT(sure.at<float>(40, 51), 1.0F);
+  EXPECT_EQ(sure.at<float>(0, 0), 0.0F);
+  for (int row = 0; row < depth.rows; ++row) {
+    for (int column = 0; column < depth.cols; ++column)
+      EXPECT_EQ(std::isnan(depth.at<float>(row, column)), sure.at<float>(row, column) == 0.0F);
   }
 }
 
@@ -235,7 +287,10 @@ TEST(DepthStage, refusesBadParameters) {
   p = params({});
   EXPECT_THROW(DepthStage{p}, std::invalid_argument);
   p = params();
-  p.splat_px = -1;
+  p.line_gap_deg = 0;
+  EXPECT_THROW(validate(p), std::invalid_argument);
+  p = params();
+  p.surface_step = 1.0;
   EXPECT_THROW(validate(p), std::invalid_argument);
 }
 

@@ -47,7 +47,6 @@ PipelineParams params() {
   PipelineParams p;
   p.camera_lidar.cameras = {"camera_left_front", "camera_right_front"};
   p.depth.cameras = {"camera_ir", "camera_left_front"};
-  p.depth.splat_px = 2;
   return p;
 }
 

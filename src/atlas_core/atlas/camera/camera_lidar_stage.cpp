@@ -5,12 +5,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "atlas/camera/foreground.hpp"
 #include "atlas/camera/frustum.hpp"
 
 namespace atlas {
 namespace {
 
 constexpr double kMinDepth_m = 0.1;  // nearer points would be inside the lens
+constexpr double kThinnest_m = 0.1;
 
 std::vector<std::string> inputNames(const CameraLidarParams& params) {
   validate(params);
@@ -30,7 +32,7 @@ std::vector<std::string> inputNames(const CameraLidarParams& params) {
 struct Candidate {
   std::uint32_t index;
   Detection2d box;  ///< part in the image
-  std::vector<float> depths_m;
+  std::vector<BoxPoint> points;
 };
 
 bool holds(const Detection2d& box, const ProjectedPoint& point) {
@@ -49,6 +51,30 @@ Detection2d around(const std::vector<Candidate>& candidates) {
   return all;
 }
 
+/// The paper's distance: the median of all that is inside the box.
+Outcome<Foreground> medianOf(const std::vector<BoxPoint>& points, const CameraLidarParams& params) {
+  std::vector<float> depths_m;
+  depths_m.reserve(points.size());
+  for (const BoxPoint& point : points) depths_m.push_back(point.depth_m);
+  const Outcome<RobustDepth> depth = robustDepth(depths_m);
+  if (!depth) return depth.reason();
+  if (points.size() < static_cast<std::size_t>(params.min_points)) return Reason::kLowQuality;
+  return Foreground{depth->median_m, depth->median_m + params.object_depth_m, depth->sigma_m, points.size()};
+}
+
+Outcome<Foreground> measure(const Detection2d& box, std::vector<BoxPoint>& points,
+                            const CameraLidarParams& params) {
+  if (params.method == "median") return medianOf(points, params);
+  ForegroundParams foreground;
+  foreground.recent_s = params.recent_s;
+  foreground.min_points = params.min_points;
+  const Outcome<Foreground> found = findForeground(box, points, foreground);
+  if (!found) return found.reason();
+  Foreground object = *found;
+  object.back_m = std::max(object.back_m, object.front_m + kThinnest_m);
+  return object;
+}
+
 }  // namespace
 
 void validate(const CameraLidarParams& params) {
@@ -56,6 +82,11 @@ void validate(const CameraLidarParams& params) {
     throw std::invalid_argument("camera_lidar: cameras must name at least one camera, got none");
   if (params.lidars.empty())
     throw std::invalid_argument("camera_lidar: lidars must name at least one lidar, got none");
+  if (params.method != "foreground" && params.method != "median")
+    throw std::invalid_argument("camera_lidar: method must be foreground or median, got '" + params.method +
+                                "'");
+  if (!(params.look_ahead_s >= 0.0)) reject("look_ahead_s", ">= 0", params.look_ahead_s);
+  if (!(params.recent_s >= 0.0)) reject("recent_s", ">= 0", params.recent_s);
   if (!(params.window_s > 0.0)) reject("window_s", "positive", params.window_s);
   if (!(params.max_depth_m > kMinDepth_m)) reject("max_depth_m", "above 0.1", params.max_depth_m);
   if (params.min_points < 1) reject("min_points", "at least 1", params.min_points);
@@ -66,6 +97,7 @@ void validate(const CameraLidarParams& params) {
 CameraLidarStage::CameraLidarStage(const CameraLidarParams& params)
     : Stage("camera_lidar", inputNames(params)),
       params_(params),
+      look_ahead_(fromSeconds(params.look_ahead_s)),
       poses_(params.max_pose_gap_s),
       window_(fromSeconds(params.window_s)),
       camera_info_(params.cameras.size()),
@@ -86,7 +118,11 @@ void CameraLidarStage::push(const Odometry& odometry) {
 void CameraLidarStage::push(std::size_t lidar, const BatchedSweepPtr& batches) {
   enqueue(lidarInput(lidar), batches->stamp, [this, batches] {
     if (batches->batches.empty()) counters_.skip("sweep", Reason::kNoPoseYet);
-    window_.push(batches);
+    const CompactSweepPtr sweep = window_.push(batches);
+    if (!sweep) return;
+    for (Waiting& waiting : waiting_) {
+      if (sweep->stamp <= waiting.detections.stamp + look_ahead_) waiting.sweeps.push_back(sweep);
+    }
   });
 }
 
@@ -120,7 +156,9 @@ void CameraLidarStage::onEnd() {
 
 void CameraLidarStage::answerReady() {
   while (!waiting_.empty()) {
-    const auto T_map_imu = poses_.at(waiting_.front().detections.stamp, merge().watermark());
+    const Stamp stamp = waiting_.front().detections.stamp;
+    if (merge().watermark() < stamp + look_ahead_) return;
+    const auto T_map_imu = poses_.at(stamp, merge().watermark());
     if (!T_map_imu) return;
     const Waiting waiting = std::move(waiting_.front());
     waiting_.pop_front();
@@ -166,23 +204,24 @@ std::vector<Frustum> CameraLidarStage::frustumsOf(const Waiting& waiting, const 
   const Pose T_camera_map = T_map_camera.inverse();
   const Detection2d all = around(candidates);
   for (const CompactSweepPtr& sweep : waiting.sweeps) {
-    intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
-      if (!holds(all, point)) return;
-      for (Candidate& c : candidates) {
-        if (holds(c.box, point)) c.depths_m.push_back(point.depth_m);
-      }
-    });
+    intrinsics.projector.projectBatches(
+        *sweep, T_camera_map, [&](const ProjectedPoint& point, const CompactSweep::Batch& batch) {
+          if (!holds(all, point)) return;
+          const auto time_s = static_cast<float>(toSeconds(batch.stamp - waiting.detections.stamp));
+          for (Candidate& c : candidates) {
+            if (holds(c.box, point)) c.points.push_back({point.u, point.v, point.depth_m, time_s});
+          }
+        });
   }
   std::vector<Frustum> frustums;
   for (Candidate& c : candidates) {
-    const std::size_t points = c.depths_m.size();
-    const Outcome<RobustDepth> depth = robustDepth(c.depths_m);
-    if (!depth || points < static_cast<std::size_t>(params_.min_points)) {
-      counters_.skip("detection", depth ? Reason::kLowQuality : depth.reason());
+    const Outcome<Foreground> object = measure(c.box, c.points, params_);
+    if (!object) {
+      counters_.skip("detection", object.reason());
       continue;
     }
-    Outcome<Frustum> made =
-        makeFrustum(c.box, *depth, params_.object_depth_m, intrinsics.model, T_map_camera);
+    Outcome<Frustum> made = makeFrustum(c.box, {object->front_m, object->sigma_m},
+                                        object->back_m - object->front_m, intrinsics.model, T_map_camera);
     if (!made) {
       counters_.skip("detection", made.reason());
       continue;
@@ -190,7 +229,7 @@ std::vector<Frustum> CameraLidarStage::frustumsOf(const Waiting& waiting, const 
     Frustum frustum = *made;
     frustum.detection_index = c.index;
     frustum.detection = waiting.detections.boxes[c.index];
-    frustum.points = static_cast<std::uint32_t>(points);
+    frustum.points = static_cast<std::uint32_t>(object->points);
     frustums.push_back(frustum);
   }
   return frustums;

@@ -21,11 +21,15 @@ struct CameraLidarParams {
   std::vector<std::string> cameras = {"camera_left_front", "camera_left_side", "camera_right_front",
                                       "camera_right_side"};
   std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
-  double window_s = 0.5;  ///< lidar sweeps used: stamp in (image - window, image]
+  std::string method = "foreground";  ///< or "median", the paper's: of everything inside the box
+  double window_s = 0.5;              ///< lidar sweeps used: stamp in (image - window, image + look_ahead]
+  /// A sweep ends after most of its points were measured: the image waits for the one that was under way.
+  double look_ahead_s = 0.1;
+  double recent_s =
+      0.05;  ///< foreground: points so near in time to the image count alone when there are enough
   double max_depth_m = 80.0;
-  int min_points = 3;  ///< fewer points give no distance (the detection is counted as skipped)
-  double object_depth_m =
-      1.0;  ///< far plane = near plane + this: one view does not tell how thick an object is
+  int min_points = 3;           ///< fewer points give no distance (the detection is counted as skipped)
+  double object_depth_m = 1.0;  ///< far plane = near plane + this, for median; else where its points end
   double max_pose_gap_s = 0.5;
 };
 void validate(const CameraLidarParams& params);
@@ -64,7 +68,7 @@ class CameraLidarStage : public Stage {
     Detections detections;
     std::optional<CameraInfo> info;       ///< newest at the image's turn
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
-    std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn
+    std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn, and those that came since
   };
   void take(std::size_t camera, const Detections& detections);
   void answerReady();
@@ -74,6 +78,7 @@ class CameraLidarStage : public Stage {
 
   CameraLidarParams params_;
   Rig rig_;
+  Duration look_ahead_;
   PoseHistory poses_;
   CameraWindow window_;
   std::vector<std::optional<CameraInfo>> camera_info_;  ///< newest per camera

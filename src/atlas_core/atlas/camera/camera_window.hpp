@@ -14,11 +14,13 @@ class CameraWindow {
  public:
   explicit CameraWindow(Duration length) : length_(length) {}
 
-  /// Sweeps come in stamp order; those without pose are not kept, those that no image at or after this stamp
-  /// can see are dropped.
-  void push(const BatchedSweepPtr& batched) {
-    if (!batched->batches.empty()) sweeps_.push_back(compacted(*batched));
+  /// Sweeps come in stamp order; those without pose are not kept (null), those that no image at or after this
+  /// stamp can see are dropped.
+  CompactSweepPtr push(const BatchedSweepPtr& batched) {
+    const CompactSweepPtr sweep = batched->batches.empty() ? nullptr : compacted(*batched);
+    if (sweep) sweeps_.push_back(sweep);
     while (!sweeps_.empty() && sweeps_.front()->stamp <= batched->stamp - length_) sweeps_.pop_front();
+    return sweep;
   }
   /// Those with a stamp in (stamp - length, ...], oldest first.
   [[nodiscard]] std::vector<CompactSweepPtr> since(Stamp stamp) const {

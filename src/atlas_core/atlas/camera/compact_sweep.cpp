@@ -22,6 +22,7 @@ CompactSweepPtr compacted(const BatchedSweep& batched) {
   std::size_t sum = 0;
   for (std::size_t b = 0; b < result->batches.size(); ++b) {
     CompactSweep::Batch& batch = result->batches[b];
+    batch.stamp = batched.batches[b].stamp;
     batch.T_map_lidar = batched.batches[b].T_map_lidar;
     const std::size_t count = batch.end;
     batch.first = batch.end = sum;  // the end moves as points come

@@ -15,6 +15,7 @@ namespace atlas {
 
 struct CompactSweep {
   struct Batch {
+    Stamp stamp = 0;  ///< when its points were measured
     Pose T_map_lidar;
     BatchBounds bounds;
     std::size_t first = 0, end = 0;  ///< of the points

@@ -1,37 +1,44 @@
 // SPDX-License-Identifier: MIT
 // Z-buffer: of all points that fall on a pixel the nearest one counts, so the order of the points has no
-// influence.
+// influence. Points measured about when the image was taken and older (or later) ones are kept apart, as what
+// moves is only where the former are.
 #pragma once
 
-#include <limits>
 #include <opencv2/core/mat.hpp>
 
+#include "atlas/camera/gap_filling.hpp"
 #include "atlas/camera/projector.hpp"
+#include "atlas/camera/visibility.hpp"
 
 namespace atlas {
 
 class DepthBuffer {
  public:
-  DepthBuffer(int width, int height) : nearest_(height, width, CV_32FC1, cv::Scalar(kNothing)) {}
+  DepthBuffer(int width, int height)
+      : recent_(height, width, CV_32FC1, cv::Scalar(kNoDepth)), older_(recent_.clone()) {}
+  DepthBuffer(const DepthBuffer&) = delete;  // a copied cv::Mat is the same pixels
+  DepthBuffer& operator=(const DepthBuffer&) = delete;
 
   /// `point` lies in the image (Projector::project).
-  void add(const ProjectedPoint& point) {
+  void add(const ProjectedPoint& point, bool recent = true) {
     // u, v >= -0.5, so truncation rounds to the nearest
     const int column = static_cast<int>(point.u + 0.5F);
     const int row = static_cast<int>(point.v + 0.5F);
-    float& depth = nearest_.ptr<float>(row)[column];
+    float& depth = (recent ? recent_ : older_).ptr<float>(row)[column];
     if (point.depth_m < depth) depth = point.depth_m;
   }
 
-  /// The image: every point covers the square of half side splat_px around its pixel; NaN where there is
-  /// none.
-  [[nodiscard]] cv::Mat image(int splat_px) const;
+  /// Only what the camera can see is left; ends the distinction of recent and older.
+  void removeInvisible(const VisibilityParams& params);
+  /// Fills between the points of a surface, see fillGaps; the result is the confidence.
+  cv::Mat fill(const GapFillingParams& params);
+  /// The image: CV_32FC1, m; NaN where there is none.
+  [[nodiscard]] cv::Mat image() const;
 
  private:
-  /// Also what cv::erode takes for pixels outside the image; infinity would become this at the border.
-  static constexpr float kNothing = std::numeric_limits<float>::max();
+  void join();
 
-  cv::Mat nearest_;  ///< CV_32FC1, kNothing where nothing was seen
+  cv::Mat recent_, older_;  ///< CV_32FC1, kNoDepth where nothing was seen; older_ is empty once joined
 };
 
 }  // namespace atlas

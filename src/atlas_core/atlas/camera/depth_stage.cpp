@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atlas/camera/depth_stage.hpp"
 
+#include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -9,6 +11,11 @@
 
 namespace atlas {
 namespace {
+
+constexpr double kSurfaceStep_m =
+    0.15;  // beside surface_step: noise of ranges and poses, and the roughness of things
+constexpr double kSurfaceSlope =
+    0.12;  // share of the depth by which two ends of a gap on one surface may differ
 
 std::vector<std::string> inputNames(const DepthParams& params) {
   validate(params);
@@ -33,13 +40,20 @@ void validate(const DepthParams& params) {
   if (!(params.min_depth_m > 0.0)) reject("min_depth_m", "positive", params.min_depth_m);
   if (!(params.max_depth_m > params.min_depth_m))
     reject("max_depth_m", "above min_depth_m", params.max_depth_m);
-  if (params.splat_px < 0 || params.splat_px > 50) reject("splat_px", "in 0..50", params.splat_px);
+  if (!(params.look_ahead_s >= 0.0)) reject("look_ahead_s", ">= 0", params.look_ahead_s);
+  if (!(params.recent_s >= 0.0)) reject("recent_s", ">= 0", params.recent_s);
+  if (!(params.line_gap_deg > 0.0 && params.line_gap_deg < 45.0))
+    reject("line_gap_deg", "in 0..45, not 0", params.line_gap_deg);
+  if (!(params.surface_step > 0.0 && params.surface_step < 1.0))
+    reject("surface_step", "in 0..1, not 0 or 1", params.surface_step);
+  if (!(params.fill_gap_m >= 0.0)) reject("fill_gap_m", ">= 0", params.fill_gap_m);
   if (!(params.max_pose_gap_s > 0.0)) reject("max_pose_gap_s", "positive", params.max_pose_gap_s);
 }
 
 DepthStage::DepthStage(const DepthParams& params)
     : Stage("depth", inputNames(params)),
       params_(params),
+      look_ahead_(fromSeconds(params.look_ahead_s)),
       poses_(params.max_pose_gap_s),
       window_(fromSeconds(params.window_s)),
       intrinsics_(params.cameras.size(), IntrinsicsCache(params.min_depth_m, params.max_depth_m)),
@@ -60,7 +74,11 @@ void DepthStage::push(const Odometry& odometry) {
 void DepthStage::push(std::size_t lidar, const BatchedSweepPtr& batches) {
   enqueue(lidarInput(lidar), batches->stamp, [this, batches] {
     if (batches->batches.empty()) counters_.skip("sweep", Reason::kNoPoseYet);
-    window_.push(batches);
+    const CompactSweepPtr sweep = window_.push(batches);
+    if (!sweep) return;
+    for (Waiting& waiting : waiting_) {
+      if (sweep->stamp <= waiting.info.stamp + look_ahead_) waiting.sweeps.push_back(sweep);
+    }
   });
 }
 
@@ -83,7 +101,9 @@ void DepthStage::onEnd() { answerReady(); }  // all inputs have ended: every pos
 
 void DepthStage::answerReady() {
   while (!waiting_.empty()) {
-    const auto T_map_imu = poses_.at(waiting_.front().info.stamp, merge().watermark());
+    const Stamp stamp = waiting_.front().info.stamp;
+    if (merge().watermark() < stamp + look_ahead_) return;
+    const auto T_map_imu = poses_.at(stamp, merge().watermark());
     if (!T_map_imu) return;
     const Waiting waiting = std::move(waiting_.front());
     waiting_.pop_front();
@@ -97,38 +117,48 @@ void DepthStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu) 
   image->camera = params_.cameras[waiting.camera];
   image->image_index = waiting.image_index;
   image->camera_info = waiting.info;
+  auto confidence = std::make_shared<DepthImage>(*image);
   const Outcome<Intrinsics>& intrinsics = intrinsics_[waiting.camera].of(waiting.info);
   if (!intrinsics) {
     counters_.skip("depth image", intrinsics.reason());
   } else {
-    const Outcome<cv::Mat> depth = render(waiting, *intrinsics, T_map_imu);
-    if (depth) {
-      image->depth = *depth;
+    const Outcome<Rendered> rendered = render(waiting, *intrinsics, T_map_imu);
+    if (rendered) {
+      image->depth = rendered->depth;
+      confidence->depth = rendered->confidence;
     } else {
-      counters_.skip("depth image", depth.reason());
-      image->depth = DepthBuffer(intrinsics->model.width(), intrinsics->model.height()).image(0);
+      counters_.skip("depth image", rendered.reason());
+      image->depth = DepthBuffer(intrinsics->model.width(), intrinsics->model.height()).image();
     }
   }
   counters_.add("depth images");
+  if (on_confidence) on_confidence(waiting.camera, confidence);
   if (on_depth) on_depth(waiting.camera, image);
 }
 
-Outcome<cv::Mat> DepthStage::render(const Waiting& waiting, const Intrinsics& intrinsics,
-                                    const Outcome<Pose>& T_map_imu) {
+Outcome<DepthStage::Rendered> DepthStage::render(const Waiting& waiting, const Intrinsics& intrinsics,
+                                                 const Outcome<Pose>& T_map_imu) {
   if (!T_map_imu) return T_map_imu.reason();
   if (!waiting.T_imu_camera) return waiting.T_imu_camera.reason();
   if (waiting.sweeps.empty()) return Reason::kNoPoints;
   const Pose T_camera_map = (*T_map_imu * *waiting.T_imu_camera).inverse();
   DepthBuffer buffer(intrinsics.model.width(), intrinsics.model.height());
+  const Duration near_in_time = fromSeconds(params_.recent_s);
   std::uint64_t seen = 0;
   for (const CompactSweepPtr& sweep : waiting.sweeps) {
-    intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
-      buffer.add(point);
-      ++seen;
-    });
+    intrinsics.projector.projectBatches(
+        *sweep, T_camera_map, [&](const ProjectedPoint& point, const CompactSweep::Batch& batch) {
+          buffer.add(point, std::abs(batch.stamp - waiting.info.stamp) <= near_in_time);
+          ++seen;
+        });
   }
   counters_.add("points in depth images", seen);
-  return buffer.image(params_.splat_px);
+  const double line_gap_px = intrinsics.model.fx() * params_.line_gap_deg * M_PI / 180.0;
+  if (params_.hide_occluded) buffer.removeInvisible({line_gap_px, params_.surface_step, kSurfaceStep_m});
+  Rendered rendered;
+  rendered.confidence = buffer.fill({intrinsics.model.fx(), params_.fill_gap_m, line_gap_px, kSurfaceSlope});
+  rendered.depth = buffer.image();
+  return rendered;
 }
 
 }  // namespace atlas

@@ -20,10 +20,16 @@ namespace atlas {
 struct DepthParams {
   std::vector<std::string> cameras = {"camera_ir"};
   std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
-  double window_s = 0.5;  ///< lidar sweeps used: stamp in (image - window, image]
+  double window_s = 0.5;  ///< lidar sweeps used: stamp in (image - window, image + look_ahead]
+  /// A sweep ends after most of its points were measured: the image waits for the one that was under way.
+  double look_ahead_s = 0.1;
+  double recent_s = 0.05;  ///< points measured so near in time to the image tell what has moved
   double min_depth_m = 0.5;
   double max_depth_m = 100.0;
-  int splat_px = 1;  ///< half side of the square that a point covers: 0 = one pixel, 1 = 3x3
+  bool hide_occluded = true;   ///< remove what shines through nearer surfaces, and what has moved away
+  double line_gap_deg = 1.5;   ///< largest angle between two scan lines, a little above the lidar's own
+  double surface_step = 0.03;  ///< share of the depth from which two depths are two surfaces
+  double fill_gap_m = 0.3;     ///< gaps between points of a surface are filled up to this, 0 = none
   double max_pose_gap_s = 0.5;
 };
 void validate(const DepthParams& params);
@@ -46,6 +52,9 @@ class DepthStage : public Stage {
   /// One per camera_info, in stamp order over all cameras; all NaN when there was no pose or no cloud, an
   /// empty Mat when the camera_info is unusable (counted).
   std::function<void(std::size_t camera, const DepthImagePtr&)> on_depth;
+  /// Before each of them: how far to believe it. `depth` holds 1 where a point was measured, 0 where nothing
+  /// is known, between where a gap was filled (fillGaps); an empty Mat when the image has no depth.
+  std::function<void(std::size_t camera, const DepthImagePtr&)> on_confidence;
 
  protected:
   [[nodiscard]] Stamp heldBackFrom() const override;
@@ -58,17 +67,21 @@ class DepthStage : public Stage {
     std::uint32_t image_index;
     CameraInfo info;
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
-    std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn
+    std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn, and those that came since
+  };
+  struct Rendered {
+    cv::Mat depth, confidence;
   };
   void take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index);
   void answerReady();
   void answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu);
   /// kNoPoints when no sweep of the window has a pose.
-  Outcome<cv::Mat> render(const Waiting& waiting, const Intrinsics& intrinsics,
-                          const Outcome<Pose>& T_map_imu);
+  Outcome<Rendered> render(const Waiting& waiting, const Intrinsics& intrinsics,
+                           const Outcome<Pose>& T_map_imu);
 
   DepthParams params_;
   Rig rig_;
+  Duration look_ahead_;
   PoseHistory poses_;
   CameraWindow window_;
   std::vector<IntrinsicsCache> intrinsics_;  ///< per camera

@@ -41,9 +41,10 @@ class Projector {
   [[nodiscard]] bool maySee(const Eigen::Matrix<float, 3, 4>& T_camera_lidar,
                             const BatchBounds& bounds) const;
 
-  /// Calls visit(const ProjectedPoint&) for every point of the sweep that is seen, batch by batch.
+  /// Calls visit(const ProjectedPoint&, const CompactSweep::Batch&) for every point of the sweep that is
+  /// seen, batch by batch.
   template <class Visit>
-  void projectSweep(const CompactSweep& sweep, const Pose& T_camera_map, Visit&& visit) const {
+  void projectBatches(const CompactSweep& sweep, const Pose& T_camera_map, Visit&& visit) const {
     Block block;
     for (const CompactSweep::Batch& batch : sweep.batches) {
       const Eigen::Matrix<float, 3, 4> T_camera_lidar = (T_camera_map * batch.T_map_lidar).matrix34f();
@@ -52,10 +53,16 @@ class Projector {
         const std::size_t count = std::min(kBlock, batch.end - first);
         seeBlock(sweep, first, count, T_camera_lidar, block);
         for (std::size_t i = 0; i < count; ++i) {
-          if (block.seen[i] != 0) visit(ProjectedPoint{block.x[i], block.y[i], block.z[i]});
+          if (block.seen[i] != 0) visit(ProjectedPoint{block.x[i], block.y[i], block.z[i]}, batch);
         }
       }
     }
+  }
+  /// The same where the batch does not matter.
+  template <class Visit>
+  void projectSweep(const CompactSweep& sweep, const Pose& T_camera_map, Visit&& visit) const {
+    projectBatches(sweep, T_camera_map,
+                   [&](const ProjectedPoint& point, const CompactSweep::Batch&) { visit(point); });
   }
 
  private:

@@ -48,10 +48,10 @@ BoxInImage projectFront(const Frustum& frustum, const CameraModel& model, const 
   if (!any_in_front) return {BoxLoss::kBehindCamera, {}};
   if (!any_seen) return {BoxLoss::kOutsideImage, {}};
   Detection2d box = frustum.detection;
-  box.x_min = std::max(low.x(), 0.0);
-  box.y_min = std::max(low.y(), 0.0);
-  box.x_max = std::min(high.x(), static_cast<double>(model.width()));
-  box.y_max = std::min(high.y(), static_cast<double>(model.height()));
+  box.x_min = std::max(low.x(), -0.5);  // the outer edges of the first and last pixels
+  box.y_min = std::max(low.y(), -0.5);
+  box.x_max = std::min(high.x(), model.width() - 0.5);
+  box.y_max = std::min(high.y(), model.height() - 0.5);
   const double width = box.x_max - box.x_min, height = box.y_max - box.y_min;
   if (width <= 0.0 || height <= 0.0) return {BoxLoss::kOutsideImage, {}};
   const double visible = width * height / ((high.x() - low.x()) * (high.y() - low.y()));

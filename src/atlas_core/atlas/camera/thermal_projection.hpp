@@ -19,7 +19,7 @@ const char* toString(BoxLoss loss);
 
 struct BoxInImage {
   BoxLoss loss = BoxLoss::kNone;
-  Detection2d box;  ///< clipped to [0, width] x [0, height]; meaningful when loss is kNone
+  Detection2d box;  ///< clipped to the image, from -1/2 to width - 1/2; meaningful when loss is kNone
 };
 
 /// Projects the outline of the front plane, sampled along its edges because distortion bends them.

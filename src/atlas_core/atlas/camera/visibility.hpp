@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// What a camera cannot see although a lidar has measured it. A lidar looks from another place and its lines
+// are far apart, so points of a far surface shine through a near one, and a moved object leaves points where
+// it was. Both are found in the image, as in Pintus, Gobbetti and Agus 2011, "Real-time rendering of massive
+// unstructured raw point clouds using screen-space operators": a point is hidden when nearer ones lie around
+// it; here, on two opposite sides within the distance of two scan lines. Neighbours are looked for in a
+// coarse image of smallest (and largest) depths, so the order of the points has no influence.
+#pragma once
+
+#include <limits>
+#include <opencv2/core/mat.hpp>
+
+namespace atlas {
+
+/// Depth of a pixel that no point falls on. Also what cv::erode takes for pixels outside the image; infinity
+/// would become this at the border.
+constexpr float kNoDepth = std::numeric_limits<float>::max();
+
+struct VisibilityParams {
+  double line_gap_px = 14.0;     ///< largest distance of two scan lines in the image
+  double relative_step = 0.05;   ///< a surface that is farther by this share of the depth ...
+  double absolute_step_m = 0.2;  ///< ... plus this is another one
+};
+
+// All images are CV_32FC1 of z-depths with kNoDepth where nothing is.
+
+/// Removes what is hidden behind nearer points of the same image.
+void removeHidden(cv::Mat& depth, const VisibilityParams& params);
+
+/// Removes from `older` what `recent` contradicts: next to it there are recent points above or below, and
+/// its depth is not among theirs, so it has moved away or something has moved in front of it.
+void removeOutdated(cv::Mat& older, const cv::Mat& recent, const VisibilityParams& params);
+
+}  // namespace atlas
