@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "bag_check.hpp"
+#include "scan_stamp_check.hpp"
 
 namespace {
 
@@ -23,6 +24,15 @@ void print(const atlas_loader::BagCheck& check) {
   std::printf("%zu problem%s\n", check.problems.size(), check.problems.size() == 1 ? "" : "s");
 }
 
+void addScanStamps(const std::string& bag, atlas_loader::BagCheck& check) {
+  atlas_loader::InputOptions input;
+  input.bag = bag;
+  for (const atlas_loader::ScanStampFit& fit : atlas_loader::tryScanStamps(input)) {
+    const atlas_loader::ScanStampVerdict verdict = atlas_loader::judge(fit);
+    (verdict.is_problem ? check.problems : check.remarks).push_back(verdict.text);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -30,14 +40,18 @@ int main(int argc, char** argv) {
       "Judges a bag: order, gaps, rates, gravity, missing topics and frames, stamps against the time of "
       "recording.");
   std::string bag;
+  bool scan_stamps = false;
   app.add_option("bag", bag, "bag to judge")->required();
+  app.add_flag("--scan-stamps", scan_stamps,
+               "also position the bag and try which moment of a sweep the stamps of lidars mark (slow)");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    const atlas_loader::BagCheck check = atlas_loader::checkBag(bag);
+    atlas_loader::BagCheck check = atlas_loader::checkBag(bag);
+    if (scan_stamps) addScanStamps(bag, check);
     print(check);
     return check.problems.empty() ? 0 : 1;
   } catch (const std::exception& error) {
