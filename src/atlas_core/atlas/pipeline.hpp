@@ -7,9 +7,9 @@
 //   <lidar>/points, odometry         -> deskew       -> <lidar>/batches
 //   <lidar>/batches                  -> aggregate    -> cloud
 //   <lidar>/batches, odometry        -> obstacles    -> obstacles
-//   <camera>/detections, batches     -> camera_lidar -> <camera>/frustums
-//   frustums, camera_ir/camera_info  -> thermal      -> camera_ir/projected_detections
-//   batches, <camera>/camera_info    -> depth        -> <camera>/depth/image
+//   <camera>/detections, batches     -> camera_lidar -> <camera>/frustums, frustums (of all, duplicates
+//   merged) frustums, camera_ir/camera_info  -> thermal      -> camera_ir/projected_detections batches,
+//   <camera>/camera_info    -> depth        -> <camera>/depth/image
 //
 // Each bindXxx names a stage's inputs and outputs once. The nodelets bind the same functions to topics
 // (atlas_ros::StageLink), the offline replay binds them to a LocalGraph: the two cannot drift apart.
@@ -150,9 +150,11 @@ StageFactory bindCameraLidar(Bus& bus, const CameraLidarParams& params) {
   inputs<S, CameraInfo>(bus, first_info, params.cameras, "/camera_info");
   inputs<S, Detections>(bus, first_info + params.cameras.size(), params.cameras, "/detections");
   const auto frustums = outputs<Frustums>(bus, params.cameras, "/frustums");
+  const auto merged = bus.template output<Frustums>("frustums");
   return [=] {
     auto stage = std::make_unique<S>(params);
     stage->on_frustums = frustums;
+    stage->on_merged = merged;
     return stage;
   };
 }

@@ -100,6 +100,7 @@ void readParams(Reader& reader, atlas::CameraLidarParams& p) {
   reader.read("max_depth_m", p.max_depth_m);
   reader.read("min_points", p.min_points);
   reader.read("object_depth_m", p.object_depth_m);
+  reader.readOptional("merge_within_s", p.merge_within_s);
   reader.read("max_pose_gap_s", p.max_pose_gap_s);
 }
 

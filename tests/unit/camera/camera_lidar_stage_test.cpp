@@ -219,6 +219,39 @@ TEST(CameraLidarStage, waitsForTheSweepThatWasUnderWay) {
   }
 }
 
+// Two cameras at one place see the same wall by the same box, 10 ms apart; the next images come 100 ms later.
+TEST(CameraLidarStage, whatTwoCamerasSeeIsMerged) {
+  CameraLidarParams p = params();
+  p.cameras = {"a", "b"};
+  const auto merged = [&](bool a_first) {
+    CameraLidarStage stage(p);
+    std::vector<Frustums> result;
+    stage.on_merged = [&](const Frustums& f) { result.push_back(f); };
+    stage.push(0, rig({{"a", forwardCamera()}, {"b", forwardCamera()}}));
+    for (int i = -1; i < 60; ++i) stage.push(test::odometry(kStart + i * 10 * kMillisecond));
+    stage.push(0, sweepOf(wall(20.0, 12.0, 9.0, 0.1), kStart - kMillisecond));
+    for (const std::size_t c : a_first ? std::vector<std::size_t>{0, 1} : std::vector<std::size_t>{1, 0}) {
+      for (int i = 0; i < 3; ++i) {
+        const Stamp stamp = kStart + (100 * i + 10 * static_cast<int>(c)) * kMillisecond;
+        stage.push(c, simpleInfo(c == 0 ? "a" : "b", stamp));
+        stage.push(c, detectionsOf({car(60, 30, 80, 50)}, stamp, static_cast<std::uint32_t>(i)));
+      }
+    }
+    for (std::size_t i = 0; i < stage.inputs(); ++i) stage.finish(i);
+    EXPECT_EQ(stage.counters().get("frustums of the same object by another camera"), 3U);
+    return result;
+  };
+  for (const bool a_first : {true, false}) {
+    const auto result = merged(a_first);
+    ASSERT_EQ(result.size(), 3U);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(result[i].stamp, kStart + 100 * i * kMillisecond);
+      ASSERT_EQ(result[i].frustums.size(), 1U);
+      EXPECT_NEAR(result[i].frustums[0].position.x(), 20.0, 1e-4);
+    }
+  }
+}
+
 TEST(CameraLidarStage, refusesBadParameters) {
   CameraLidarParams p = params();
   p.min_points = 0;

@@ -7,6 +7,7 @@
 
 #include "atlas/camera/foreground.hpp"
 #include "atlas/camera/frustum.hpp"
+#include "atlas/camera/frustum_merge.hpp"
 
 namespace atlas {
 namespace {
@@ -91,6 +92,7 @@ void validate(const CameraLidarParams& params) {
   if (!(params.max_depth_m > kMinDepth_m)) reject("max_depth_m", "above 0.1", params.max_depth_m);
   if (params.min_points < 1) reject("min_points", "at least 1", params.min_points);
   if (!(params.object_depth_m > 0.0)) reject("object_depth_m", "positive", params.object_depth_m);
+  if (!(params.merge_within_s >= 0.0)) reject("merge_within_s", ">= 0", params.merge_within_s);
   if (!(params.max_pose_gap_s > 0.0)) reject("max_pose_gap_s", "positive", params.max_pose_gap_s);
 }
 
@@ -145,25 +147,47 @@ void CameraLidarStage::take(std::size_t camera, const Detections& detections) {
 }
 
 Stamp CameraLidarStage::heldBackFrom() const {
+  if (!group_.empty()) return group_.front().stamp;
   return waiting_.empty() ? kEndOfTime : waiting_.front().detections.stamp;
 }
 
 void CameraLidarStage::onProgress() { answerReady(); }
 
+// All inputs have ended: every pose is known or unknown for good.
 void CameraLidarStage::onEnd() {
   answerReady();
-}  // all inputs have ended: every pose is known or unknown for good
+  mergeGroup();
+}
 
 void CameraLidarStage::answerReady() {
-  while (!waiting_.empty()) {
-    const Stamp stamp = waiting_.front().detections.stamp;
-    if (merge().watermark() < stamp + look_ahead_) return;
-    const auto T_map_imu = poses_.at(stamp, merge().watermark());
-    if (!T_map_imu) return;
-    const Waiting waiting = std::move(waiting_.front());
-    waiting_.pop_front();
-    answer(waiting, *T_map_imu);
+  while (answerOldest()) {
   }
+  if (group_.empty()) return;
+  const Stamp last = group_.front().stamp + fromSeconds(params_.merge_within_s);
+  const bool one_waits = !waiting_.empty() && waiting_.front().detections.stamp <= last;
+  if (!one_waits && merge().watermark() >= last) mergeGroup();
+}
+
+bool CameraLidarStage::answerOldest() {
+  if (waiting_.empty()) return false;
+  const Stamp stamp = waiting_.front().detections.stamp;
+  if (merge().watermark() < stamp + look_ahead_) return false;
+  const auto T_map_imu = poses_.at(stamp, merge().watermark());
+  if (!T_map_imu) return false;
+  const Waiting waiting = std::move(waiting_.front());
+  waiting_.pop_front();
+  answer(waiting, *T_map_imu);
+  return true;
+}
+
+void CameraLidarStage::mergeGroup() {
+  if (group_.empty()) return;
+  const Frustums merged = mergeDuplicates(group_, {});
+  std::size_t seen = 0;
+  for (const Frustums& image : group_) seen += image.frustums.size();
+  counters_.add("frustums of the same object by another camera", seen - merged.frustums.size());
+  group_.clear();
+  if (on_merged) on_merged(merged);
 }
 
 void CameraLidarStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu) {
@@ -186,6 +210,9 @@ void CameraLidarStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map
   counters_.add("images with detections");
   counters_.add("detections", boxes);
   counters_.add("frustums", result.frustums.size());
+  if (!group_.empty() && result.stamp > group_.front().stamp + fromSeconds(params_.merge_within_s))
+    mergeGroup();
+  group_.push_back(result);
   if (on_frustums) on_frustums(waiting.camera, result);
 }
 

@@ -31,6 +31,7 @@ struct CameraLidarParams {
   int min_points = 3;           ///< fewer points give no distance (the detection is counted as skipped)
   double object_depth_m = 1.0;  ///< far plane = near plane + this, for median; else where its points end
   double max_pose_gap_s = 0.5;
+  double merge_within_s = 0.03;  ///< images of different cameras so near in time show the same objects
 };
 void validate(const CameraLidarParams& params);
 
@@ -56,6 +57,9 @@ class CameraLidarStage : public Stage {
 
   /// One per Detections, in order per camera; without frustums when there was no pose, intrinsics or points.
   std::function<void(std::size_t camera, const Frustums&)> on_frustums;
+  /// Of all cameras, objects that several of them see once (mergeDuplicates): one for each group of images
+  /// that are at most merge_within_s after its first.
+  std::function<void(const Frustums&)> on_merged;
 
  protected:
   [[nodiscard]] Stamp heldBackFrom() const override;
@@ -72,6 +76,9 @@ class CameraLidarStage : public Stage {
   };
   void take(std::size_t camera, const Detections& detections);
   void answerReady();
+  /// Answers the oldest detections that wait; false when that is not possible yet.
+  bool answerOldest();
+  void mergeGroup();
   void answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu);
   std::vector<Frustum> frustumsOf(const Waiting& waiting, const Intrinsics& intrinsics,
                                   const Pose& T_map_camera);
@@ -84,6 +91,7 @@ class CameraLidarStage : public Stage {
   std::vector<std::optional<CameraInfo>> camera_info_;  ///< newest per camera
   std::vector<IntrinsicsCache> intrinsics_;             ///< per camera
   std::deque<Waiting> waiting_;                         ///< in merged order
+  std::vector<Frustums> group_;                         ///< answered, not merged yet
 };
 
 }  // namespace atlas
