@@ -2,6 +2,7 @@
 #include "graph_check.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace atlas_loader {
 namespace {
@@ -33,6 +34,21 @@ std::string missingInGraph(const std::vector<std::string>& expected_stages, cons
   const std::vector<MissingLink> links = missingLinks(hellos);
   if (links.empty()) return "";
   return links[0].consumer + " is not linked to " + links[0].topic + " of " + links[0].producer;
+}
+
+void requireOneProducer(const Hellos& hellos) {
+  std::map<std::string, std::string> producers;
+  const std::string everyone = "/progress";
+  for (const auto& [stage, hello] : hellos) {
+    for (const std::string& topic : hello.outputs) {
+      const bool shared = topic.size() >= everyone.size() &&
+                          topic.compare(topic.size() - everyone.size(), everyone.size(), everyone) == 0;
+      const auto [known, fresh] = producers.emplace(topic, stage);
+      if (!shared && !fresh)
+        throw std::runtime_error(topic + " comes from " + known->second + " and from " + stage +
+                                 "; a topic has one producer");
+    }
+  }
 }
 
 }  // namespace atlas_loader

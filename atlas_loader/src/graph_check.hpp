@@ -24,4 +24,8 @@ std::vector<MissingLink> missingLinks(const Hellos& hellos);
 /// What keeps the graph from being complete, in words; empty when it is.
 std::string missingInGraph(const std::vector<std::string>& expected_stages, const Hellos& hellos);
 
+/// Throws std::runtime_error naming a topic that two of them publish: the recording has detections, and there
+/// is a detector.
+void requireOneProducer(const Hellos& hellos);
+
 }  // namespace atlas_loader

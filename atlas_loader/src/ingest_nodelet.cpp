@@ -30,6 +30,9 @@ class IngestNodelet : public nodelet::Nodelet {
     RunSourceParams source;
     double max_delay_s = 2.0;
     params.read("stages", source.stages);
+    std::vector<std::string> more_stages;  // those that are not always there
+    params.readOptional("more_stages", more_stages);
+    source.stages.insert(source.stages.end(), more_stages.begin(), more_stages.end());
     params.readOptional("lead_s", source.lead_s);
     params.readOptional("graph_timeout_s", source.graph_timeout_s);
     params.readOptional("max_delay_s", max_delay_s);

@@ -41,6 +41,9 @@ class PlayerNodelet : public nodelet::Nodelet {
     params.readOptional("paused", paused_);
     RunSourceParams source;
     params.read("stages", source.stages);
+    std::vector<std::string> more_stages;  // those that are not always there
+    params.readOptional("more_stages", more_stages);
+    source.stages.insert(source.stages.end(), more_stages.begin(), more_stages.end());
     params.readOptional("lead_s", source.lead_s);
     params.readOptional("graph_timeout_s", source.graph_timeout_s);
     params.rejectUnread();

@@ -119,6 +119,7 @@ void RunSource::awaitGraph() {
       std::unique_lock<std::mutex> lock(mutex_);
       changed_.wait_for(lock, kPoll);
       missing = missingInGraph(params_.stages, hellos_);
+      requireOneProducer(hellos_);
     }
     if (missing.empty()) return;
     const auto now = std::chrono::steady_clock::now();

@@ -47,6 +47,21 @@ TEST(Graph, EveryMissingLinkIsNamedWithTheProcessThatHasToSubscribeAgain) {
   EXPECT_EQ(links[2].producer, "b");
 }
 
+TEST(Graph, ATopicHasOneProducer) {
+  std::map<std::string, atlas_msgs::StageHello> hellos = {
+      {"detector", hello("detector", "/a", {}, {"/atlas/progress", "/atlas/x/detections"})},
+      {"source", hello("source", "/b", {}, {"/atlas/progress", "/atlas/graph_start"})}};
+  EXPECT_NO_THROW(atlas_loader::requireOneProducer(hellos));
+  hellos["source"].outputs.push_back("/atlas/x/detections");
+  try {
+    atlas_loader::requireOneProducer(hellos);
+    FAIL() << "two producers";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "/atlas/x/detections comes from detector and from source; a topic has one producer");
+  }
+}
+
 TEST(Graph, ATopicWithoutProducerIsNoObstacle) {
   EXPECT_EQ(atlas_loader::missingInGraph({"b"}, {{"b", hello("b", "/b", {"/nobody"}, {})}}), "");
 }
