@@ -81,13 +81,16 @@ void OverlayWriterStage::onProgress() {
 
 void OverlayWriterStage::write(std::size_t camera, const Picture& picture) {
   cv::Mat canvas = picture.image->pixels.clone();
-  if (canvas.empty()) {
-    counters_.skip("overlay", Reason::kEmpty);
-    return;
-  }
+  if (canvas.empty()) return counters_.skip("overlay", Reason::kEmpty);
+  if (canvas.type() != CV_8UC1 && canvas.type() != CV_8UC3)
+    return counters_.skip("overlay", Reason::kBadLayout);
   if (canvas.channels() == 1) cv::cvtColor(canvas, canvas, cv::COLOR_GRAY2BGR);
-  if (picture.depth && picture.depth->depth.size() == canvas.size())
+  if (picture.depth && picture.depth->depth.size() == canvas.size()) {
     canvas = drawDepth(canvas, picture.depth->depth);
+  } else if (picture.depth && !picture.depth->depth.empty()) {
+    counters_.skip("depth of an overlay",
+                   Reason::kBadLayout);  // the image has another size than its camera_info
+  }
   if (picture.frustums) canvas = drawFrustums(canvas, *picture.frustums);
   std::vector<unsigned char> png;
   cv::imencode(".png", canvas, png, {cv::IMWRITE_PNG_COMPRESSION, 1});
@@ -99,6 +102,13 @@ void OverlayWriterStage::write(std::size_t camera, const Picture& picture) {
   file.write(png.data(), png.size());
   file.commit();
   counters_.add("overlays");
+  if (!on_overlay) return;
+  auto overlay = std::make_shared<Image>();
+  overlay->stamp = picture.image->stamp;
+  overlay->frame = picture.image->frame;
+  overlay->format = "bgr8";
+  overlay->pixels = canvas;
+  on_overlay(camera, overlay);
 }
 
 }  // namespace atlas

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,8 @@ class OverlayWriterStage : public Stage {
   void push(std::size_t camera, const ImagePtr& image);
   void push(std::size_t camera, const DepthImagePtr& depth);
   void push(std::size_t camera, const Frustums& frustums);
+
+  std::function<void(std::size_t camera, const ImagePtr&)> on_overlay;  ///< bgr8, the picture of the file
 
  protected:
   void onProgress() override;

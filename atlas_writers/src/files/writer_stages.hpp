@@ -208,7 +208,12 @@ StageFactory bindOverlayWriter(Bus& bus, const OverlayWriterParams& params, cons
     bus.template input<S, Frustums>(S::input(c, S::kFrustums), camera + "/frustums",
                                     [c](S& s, const Frustums& frustums) { s.push(c, frustums); });
   }
-  return [=] { return std::make_unique<S>(params, out); };
+  const auto overlays = outputs<ImagePtr>(bus, params.cameras, "/overlay/image");
+  return [=] {
+    auto stage = std::make_unique<S>(params, out);
+    stage->on_overlay = overlays;
+    return stage;
+  };
 }
 
 }  // namespace atlas

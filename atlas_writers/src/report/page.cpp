@@ -100,6 +100,7 @@ std::string gallerySection(const PageOptions& options, const std::vector<Traject
   gallery.add("overlay.png", chooseOverlay(options.out), "camera overlay");
   gallery.add("depth.png", chooseDepth(options.out), "depth image");
   gallery.add("thermal.png", chooseThermal(options.out), "thermal image");
+  gallery.add("contact_sheet.png", contactSheet(options.out), "contact sheet");
   if (!options.screenshot.empty() && fs::exists(options.screenshot)) {
     gallery.add("rviz.png", cv::imread(options.screenshot.string()), "RViz during the replay");
   }
@@ -115,6 +116,16 @@ std::string tableSections(const json& run) {
     html += section("Stages", details("read, answered and skipped, by stage", toHtml(stages)));
   const std::string notes = notesHtml(run);
   return notes.empty() ? html : html + section("Notes of the run", notes);
+}
+
+std::string datasetSection(const fs::path& out) {
+  const fs::path file = out / "thermal/card.json";
+  if (!fs::exists(file)) return "";
+  const auto card = readJson<json>(file);
+  const Table classes = datasetTable(card), dropped = droppedTable(card);
+  std::string html = classes.rows.empty() ? "" : toHtml(classes);
+  if (!dropped.rows.empty()) html += details("left out, and why", toHtml(dropped));
+  return html.empty() ? "" : section("Thermal dataset", html);
 }
 
 std::string subtitleOf(const json& run, const std::string& label) {
@@ -145,7 +156,7 @@ fs::path writeReport(const PageOptions& options) {
     body += section("Errors against the truth of the synthetic drive",
                     evaluationHtml(readJson<nlohmann::ordered_json>(options.evaluation)));
   }
-  body += gallerySection(options, trajectory, folder) + tableSections(run);
+  body += gallerySection(options, trajectory, folder) + datasetSection(options.out) + tableSections(run);
   const std::string html = document("Atlas Fusion report", subtitleOf(run, options.record_label), body);
   writeWhole(folder / "index.html", html.data(), html.size());
   return folder / "index.html";

@@ -178,4 +178,10 @@ std::optional<Picture> chooseThermal(const fs::path& out) {
                              " images"};
 }
 
+std::optional<Picture> contactSheet(const fs::path& out) {
+  const cv::Mat pixels = cv::imread((out / "thermal/contact_sheet.png").string(), cv::IMREAD_COLOR);
+  if (pixels.empty()) return std::nullopt;
+  return Picture{pixels, "Contact sheet of the thermal dataset: labelled frames chosen at random"};
+}
+
 }  // namespace atlas::report

@@ -27,6 +27,9 @@ std::optional<Picture> chooseOverlay(const std::filesystem::path& out);
 /// The thermal image with the most labels, its boxes drawn.
 std::optional<Picture> chooseThermal(const std::filesystem::path& out);
 
+/// The contact sheet of the thermal dataset, as the run drew it.
+std::optional<Picture> contactSheet(const std::filesystem::path& out);
+
 /// Sorted files of a folder with this extension; empty when there is no such folder.
 std::vector<std::filesystem::path> filesOf(const std::filesystem::path& folder, const std::string& extension);
 

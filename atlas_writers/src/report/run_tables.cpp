@@ -94,6 +94,28 @@ Table stageTable(const json& run) {
   return table;
 }
 
+Table datasetTable(const json& card) {
+  Table table{{"class", "train", "val", "test", "small", "medium", "large"}, {}, 1};
+  const auto row = [&](const std::string& name, const json& parts, const json& sizes) {
+    std::vector<std::string> cells = {name};
+    for (const char* part : {"train", "val", "test"}) cells.push_back(textOf(child(parts, part)));
+    for (const char* size : {"small", "medium", "large"})
+      cells.push_back(sizes.is_null() ? "" : textOf(child(sizes, size)));
+    table.rows.push_back(cells);
+  };
+  if (card.contains("frames")) row("frames", card["frames"], json());
+  for (const auto& [name, entry] : child(card, "classes").items())
+    row(name, child(entry, "boxes"), child(entry, "sizes"));
+  return table;
+}
+
+Table droppedTable(const json& card) {
+  Table table{{"left out of the dataset", "count"}, {}, 1};
+  for (const auto& [what, count] : child(card, "dropped").items())
+    table.rows.push_back({what, textOf(count)});
+  return table;
+}
+
 std::string notesHtml(const json& run) {
   std::string html;
   for (const auto& note : child(run, "notes")) html += "<li>" + escaped(textOf(note)) + "</li>\n";

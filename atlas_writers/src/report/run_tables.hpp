@@ -18,6 +18,10 @@ Table streamTable(const nlohmann::json& run);
 Table fileTable(const nlohmann::json& run);
 /// Counters of each stage.
 Table stageTable(const nlohmann::json& run);
+/// Boxes of each class by part and size, from thermal/card.json.
+Table datasetTable(const nlohmann::json& card);
+/// What was left out of the dataset, and how often.
+Table droppedTable(const nlohmann::json& card);
 /// The notes of the run as a list; empty text when there are none.
 std::string notesHtml(const nlohmann::json& run);
 
