@@ -8,11 +8,11 @@ namespace atlas_fusion {
 
 class DepthNodelet : public atlas_ros::StageNodelet<atlas::DepthParams> {
   atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::DepthParams& params) override {
+    const atlas::StageFactory factory = atlas::bindDepth(link, params);
     for (const std::string& camera : params.cameras) {
       infos_.push_back(getNodeHandle().advertise<sensor_msgs::CameraInfo>(camera + "/depth/camera_info",
                                                                           atlas_ros::kKeepAll));
     }
-    const atlas::StageFactory factory = atlas::bindDepth(link, params);
     return [this, factory] {
       auto stage = factory();
       auto& depth = static_cast<atlas::DepthStage&>(*stage);

@@ -9,11 +9,11 @@ namespace atlas_lidar {
 
 class DeskewNodelet : public atlas_ros::StageNodelet<atlas::DeskewParams> {
   atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::DeskewParams& params) override {
+    const atlas::StageFactory factory = atlas::bindDeskew(link, params);
     for (const std::string& lidar : params.lidars) {
       clouds_.push_back(getNodeHandle().advertise<sensor_msgs::PointCloud2>(lidar + "/points_deskewed",
                                                                             atlas_ros::kKeepAll));
     }
-    const atlas::StageFactory factory = atlas::bindDeskew(link, params);
     return [this, factory] {
       auto stage = factory();
       auto& deskew = static_cast<atlas::DeskewStage&>(*stage);

@@ -8,8 +8,8 @@ namespace atlas_lidar {
 
 class ObstacleNodelet : public atlas_ros::StageNodelet<atlas::ObstacleParams> {
   atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::ObstacleParams& params) override {
-    ground_ = getNodeHandle().advertise<sensor_msgs::PointCloud2>("ground", atlas_ros::kKeepAll);
     const atlas::StageFactory factory = atlas::bindObstacles(link, params);
+    ground_ = getNodeHandle().advertise<sensor_msgs::PointCloud2>("ground", atlas_ros::kKeepAll);
     return [this, factory] {
       auto stage = factory();
       auto& obstacles = static_cast<atlas::ObstacleStage&>(*stage);

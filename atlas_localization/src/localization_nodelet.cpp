@@ -13,6 +13,7 @@ namespace atlas_localization {
 
 class LocalizationNodelet : public atlas_ros::StageNodelet<atlas::LocalizationParams> {
   atlas::StageFactory bind(atlas_ros::StageLink& link, const atlas::LocalizationParams& params) override {
+    const atlas::StageFactory factory = atlas::bindLocalization(link, params);
     using atlas_ros::kKeepAll;
     ros::NodeHandle& handle = getNodeHandle();
     path_publisher_ = handle.advertise<nav_msgs::Path>("trajectory", kKeepAll, true);
@@ -23,7 +24,6 @@ class LocalizationNodelet : public atlas_ros::StageNodelet<atlas::LocalizationPa
     link.on_end = [this] {
       if (path_.hasMore()) path_publisher_.publish(path_.message());
     };
-    const atlas::StageFactory factory = atlas::bindLocalization(link, params);
     return [this, factory] {
       path_ = {};
       map_.reset();

@@ -33,7 +33,8 @@ class WriterNodelet : public nodelet::Nodelet {
     link_->start(bind(*link_, params, out));
   } catch (const std::exception& error) {
     NODELET_FATAL("%s", error.what());
-    throw;  // the manager refuses the nodelet
+    link_.reset();  // nodelet::Loader destroys a refused nodelet after its callback queues
+    throw;          // the manager refuses the nodelet
   }
 
   std::unique_ptr<atlas_ros::StageLink> link_;

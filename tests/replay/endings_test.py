@@ -70,7 +70,9 @@ class Endings(WholeRun):
             launched.process.wait(timeout=60)
         log = launched.log.read_text(errors="replace")
         self.assertIn("cluster_tolerance_m", log)
-        self.assertIn("-0.5", log)
+        self.assertIn("Failed to initialize nodelet /atlas/obstacles", log)
+        self.assertNotIn("exit code -", log)  # only that nodelet is refused, the manager does not crash
+        self.assertIn("-0.3", log)
 
     def test_an_unknown_parameter_ends_the_run(self):
         config = self.folder / "unknown.yaml"

@@ -17,7 +17,8 @@ namespace atlas_ros {
 template <class Params>
 class StageNodelet : public nodelet::Nodelet {
  protected:
-  /// Declares inputs and outputs on the link; gives the factory of the stage.
+  /// Declares inputs and outputs on the link; gives the factory of the stage. May throw, but only before it
+  /// advertises anything of its own: a refused nodelet outlives its callback queues.
   virtual atlas::StageFactory bind(StageLink& link, const Params& params) = 0;
 
  private:
@@ -31,7 +32,8 @@ class StageNodelet : public nodelet::Nodelet {
     link_->start(bind(*link_, params));
   } catch (const std::exception& error) {
     NODELET_FATAL("%s", error.what());
-    throw;  // the manager refuses the nodelet
+    link_.reset();  // nodelet::Loader destroys a refused nodelet after its callback queues
+    throw;          // the manager refuses the nodelet
   }
 
   std::unique_ptr<StageLink> link_;
