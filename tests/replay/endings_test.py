@@ -70,7 +70,7 @@ class Endings(WholeRun):
             launched.process.wait(timeout=60)
         log = launched.log.read_text(errors="replace")
         self.assertIn("cluster_tolerance_m", log)
-        self.assertIn("Failed to initialize nodelet /atlas/obstacles", log)
+        self.assertIn("REQUIRED process [atlas/obstacles-", log)
         self.assertNotIn("exit code -", log)  # only that nodelet is refused, the manager does not crash
         self.assertIn("-0.3", log)
 
