@@ -8,14 +8,6 @@ constexpr double kStep_m = 0.5;  // between poses of the path
 constexpr std::size_t kMostPoses = 20000;
 constexpr std::size_t kGrowth = 100;  // a path of n poses waits for n / 100 more
 
-geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v) {
-  geometry_msgs::Vector3 msg;
-  msg.x = v.x();
-  msg.y = v.y();
-  msg.z = v.z();
-  return msg;
-}
-
 }  // namespace
 
 atlas_msgs::LocalizationStatus toMsg(const atlas::LocalizationStatus& status) {
@@ -51,10 +43,10 @@ atlas_msgs::ImuBias toMsg(const atlas::ImuBias& bias, atlas::Stamp stamp) {
   atlas_msgs::ImuBias msg;
   msg.header.stamp = atlas_ros::toTime(stamp);
   msg.header.frame_id = "base_link";
-  msg.gyro = vector3(bias.gyro_radps);
-  msg.gyro_sigma = vector3(bias.gyro_sigma_radps);
-  msg.accel = vector3(bias.accel_mps2);
-  msg.accel_sigma = vector3(bias.accel_sigma_mps2);
+  msg.gyro = atlas_ros::vector3(bias.gyro_radps);
+  msg.gyro_sigma = atlas_ros::vector3(bias.gyro_sigma_radps);
+  msg.accel = atlas_ros::vector3(bias.accel_mps2);
+  msg.accel_sigma = atlas_ros::vector3(bias.accel_sigma_mps2);
   return msg;
 }
 
@@ -84,7 +76,7 @@ std::vector<geometry_msgs::TransformStamped> transformsOf(const atlas::Odometry&
   odom.transform.rotation.w = 1.0;
   base.header.frame_id = "odom";
   base.child_frame_id = "base_link";
-  base.transform.translation = vector3(odometry.T_map_imu.translation);
+  base.transform.translation = atlas_ros::vector3(odometry.T_map_imu.translation);
   base.transform.rotation = atlas_ros::toMsg(odometry.T_map_imu).orientation;
   return {odom, base};
 }

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """roscpp does not try again when the first request of a connection is lost. Both halves of the remedy: the source names the links
 that are missing after some seconds, and a stage whose link is named subscribes anew."""
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -44,6 +45,7 @@ class Relink(unittest.TestCase):
     def test_source_asks_for_the_missing_link(self):
         """A stage that says it wants `imu/data` but has no connection: it subscribes when it is asked to."""
         folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, folder)
         with rosbag.Bag(str(folder / "a.bag"), "w") as bag:
             for i in range(100):
                 message = Imu()

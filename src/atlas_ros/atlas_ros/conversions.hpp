@@ -12,6 +12,7 @@
 #include <atlas_msgs/RadarScan.h>
 #include <atlas_msgs/TemperatureRange.h>
 #include <atlas_msgs/VideoPacket.h>
+#include <geometry_msgs/Vector3.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/CompressedImage.h>
@@ -34,6 +35,7 @@ namespace atlas_ros {
 /// ROS 1 stamps are unsigned seconds: a stamp before 1970 or after 2106 throws std::invalid_argument.
 ros::Time toTime(atlas::Stamp stamp);
 atlas::Stamp fromTime(const ros::Time& time);
+geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v);
 
 // Sensors
 tf2_msgs::TFMessage toMsg(const atlas::StaticTransforms& transforms, atlas::Stamp stamp);

@@ -20,13 +20,6 @@ geometry_msgs::Point point(const Eigen::Vector3d& p) {
 }
 Eigen::Vector3d fromPoint(const geometry_msgs::Point& p) { return {p.x, p.y, p.z}; }
 
-geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v) {
-  geometry_msgs::Vector3 msg;
-  msg.x = v.x();
-  msg.y = v.y();
-  msg.z = v.z();
-  return msg;
-}
 Eigen::Vector3d fromVector3(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace

@@ -15,13 +15,6 @@ bool finite(const geometry_msgs::Vector3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v) {
-  geometry_msgs::Vector3 msg;
-  msg.x = v.x();
-  msg.y = v.y();
-  msg.z = v.z();
-  return msg;
-}
 Eigen::Vector3d fromVector3(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
 
 geometry_msgs::Quaternion quaternion(const Eigen::Quaterniond& q) {
@@ -43,6 +36,14 @@ atlas::Outcome<Eigen::Quaterniond> fromQuaternion(const geometry_msgs::Quaternio
 }
 
 }  // namespace
+
+geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v) {
+  geometry_msgs::Vector3 msg;
+  msg.x = v.x();
+  msg.y = v.y();
+  msg.z = v.z();
+  return msg;
+}
 
 ros::Time toTime(atlas::Stamp stamp) {
   if (stamp < 0 || stamp / atlas::kSecond > static_cast<atlas::Stamp>(UINT32_MAX)) {

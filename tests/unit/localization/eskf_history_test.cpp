@@ -22,14 +22,7 @@ void runInto(eskf::History& history) {
   params.filter = "eskf";
   LocalizationStage stage(params);
   stage.record(&history);
-  stage.push(recording.imu.front().stamp, rigWith(d.lever_arm_imu));
-  stage.finish(LocalizationStage::kTfStatic);
-  for (const GnssFix& fix : recording.fixes) stage.push(fix);
-  for (const GnssHeading& heading : recording.headings) stage.push(heading);
-  stage.finish(LocalizationStage::kGnssFix);
-  stage.finish(LocalizationStage::kGnssHeading);
-  for (const ImuSample& sample : recording.imu) stage.push(sample);
-  stage.finish(LocalizationStage::kImu);
+  feed(stage, recording, d);
   history.smooth();
 }
 

@@ -24,11 +24,8 @@ inline void listen(LocalizationStage& stage, StageRun& run) {
   stage.on_anchor = [&run](const Anchor& anchor) { run.anchor = anchor; };
 }
 
-inline StageRun runStage(const Recording& recording, const DriveParams& drive,
-                         const LocalizationParams& params = {}) {
-  StageRun result;
-  LocalizationStage stage(params);
-  listen(stage, result);
+/// The whole recording, stream by stream.
+inline void feed(LocalizationStage& stage, const Recording& recording, const DriveParams& drive) {
   stage.push(recording.imu.front().stamp, rigWith(drive.lever_arm_imu));
   stage.finish(LocalizationStage::kTfStatic);
   for (const GnssFix& fix : recording.fixes) stage.push(fix);
@@ -37,6 +34,14 @@ inline StageRun runStage(const Recording& recording, const DriveParams& drive,
   stage.finish(LocalizationStage::kGnssHeading);
   for (const ImuSample& sample : recording.imu) stage.push(sample);
   stage.finish(LocalizationStage::kImu);
+}
+
+inline StageRun runStage(const Recording& recording, const DriveParams& drive,
+                         const LocalizationParams& params = {}) {
+  StageRun result;
+  LocalizationStage stage(params);
+  listen(stage, result);
+  feed(stage, recording, drive);
   result.counters = stage.counters();
   return result;
 }
