@@ -5,14 +5,12 @@
 // run in words.
 //
 //   saturated    a value at the range limit. Without a given range the limit is learned: the largest
-//   magnitude
-//                so far, three times in a row exactly, where no range ends below (2 g, 1.7 rad/s)
+//                magnitude so far, three times in a row exactly, where no range ends below (2 g, 1.7 rad/s)
 //   frozen       all six values exactly the same for a while, in a signal that used to vary
 //   beyond       more than any IMU of a vehicle measures
 //   gap          more than five usual periods without a sample: counted, with its length
 //   wrong units  mean acceleration of the first seconds in g, without gravity, or pointing down; turn rates
-//   in
-//                degrees (against the IMU's own orientation, or faster than a vehicle turns)
+//                in degrees (against the IMU's own orientation, or faster than a vehicle turns)
 #pragma once
 
 #include <cmath>
