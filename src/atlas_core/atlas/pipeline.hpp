@@ -3,13 +3,14 @@
 //
 //   imu/data, gnss/fix, gnss/heading,
 //   imu/gnss/fix (second receiver),
-//   imu/pressure (if asked for)      -> localization -> odometry
-//   <lidar>/points, odometry         -> deskew       -> <lidar>/batches
-//   <lidar>/batches                  -> aggregate    -> cloud
-//   <lidar>/batches, odometry        -> obstacles    -> obstacles
-//   <camera>/detections, batches     -> camera_lidar -> <camera>/frustums, frustums (of all, duplicates
-//   merged) frustums, camera_ir/camera_info  -> thermal      -> camera_ir/projected_detections batches,
-//   <camera>/camera_info    -> depth        -> <camera>/depth/image
+//   imu/pressure (if asked for)          -> localization -> odometry
+//   <lidar>/points, odometry             -> deskew       -> <lidar>/batches
+//   <lidar>/batches                      -> aggregate    -> cloud
+//   <lidar>/batches, odometry            -> obstacles    -> obstacles
+//   <camera>/detections, batches         -> camera_lidar -> <camera>/frustums,
+//                                                           frustums (all cameras, merged)
+//   <camera>/frustums, IR camera_info    -> thermal      -> camera_ir/projected_detections
+//   batches, <camera>/camera_info        -> depth        -> <camera>/depth/image
 //
 // Each bindXxx names a stage's inputs and outputs once. The nodelets bind the same functions to topics
 // (atlas_ros::StageLink), the offline replay binds them to a LocalGraph: the two cannot drift apart.
