@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """A folder of the core includes only folders to its left:
-base <- sensor <- calibration <- {localization, lidar, camera, stereo} <- {fusion, grid} <- output <- pipeline."""
+base <- sensor <- calibration <- {localization, lidar, camera, stereo} <- {fusion, grid, monitor} <- output <- pipeline."""
 import re
 
 from sources import CPP, files, finish, read, root
 
-ORDER = [{"base"}, {"sensor"}, {"calibration"}, {"localization", "lidar", "camera", "stereo"}, {"fusion", "grid"}, {"output"},
-         {"pipeline"}]
+ORDER = [{"base"}, {"sensor"}, {"calibration"}, {"localization", "lidar", "camera", "stereo"}, {"fusion", "grid", "monitor"},
+         {"output"}, {"pipeline"}]
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
 INCLUDE = re.compile(r'#\s*include\s*[<"](atlas/([^/">]+)[^">]*)[">]')
 

@@ -54,20 +54,24 @@ ImuGuard::ImuGuard(const ImuGuardParams& params, Counters& counters) : params_(p
 
 bool ImuGuard::usable(const ImuSample& sample) {
   doubt_ = {};
+  verdict_ = {};
   if (before_ && sample.stamp <= before_->stamp) return true;  // the filter counts it
   if (largestOf(sample.linear_acceleration_mps2) > kMostForce_mps2) {
     counters_.add("skipped imu: acceleration beyond 200 m/s^2");
+    verdict_.beyond = true;
     return false;
   }
   watchUnits(sample);
   if (largestOf(sample.angular_velocity_radps) > kMostRate_radps) {
     counters_.add("skipped imu: turn rate beyond 40 rad/s");
+    verdict_.beyond = true;
     return false;
   }
   watchGap(sample);
   const ImuSample before = before_.value_or(sample);
   const bool was_frozen = is_frozen_;
   is_frozen_ = before_ && frozen(sample);
+  verdict_.frozen = is_frozen_;
   bool usable = !is_frozen_;
   // A signal that stands still altogether is frozen, not saturated.
   if (same_ == 0 && before_) judgeRange(sample, before, usable);
@@ -83,11 +87,13 @@ bool ImuGuard::usable(const ImuSample& sample) {
 void ImuGuard::judgeRange(const ImuSample& sample, const ImuSample& before, bool& usable) {
   if (accel_.saturated(sample.linear_acceleration_mps2, before.linear_acceleration_mps2)) {
     counters_.add("skipped imu: accelerometer saturated");
+    verdict_.accelerometer_saturated = true;
     doubt_.velocity = accel_.doubt(period_s_);
     usable = false;
   }
   if (gyro_.saturated(sample.angular_velocity_radps, before.angular_velocity_radps)) {
     counters_.add("skipped imu: gyroscope saturated");
+    verdict_.gyroscope_saturated = true;
     doubt_.turn = gyro_.doubt(period_s_);
     usable = false;
   }

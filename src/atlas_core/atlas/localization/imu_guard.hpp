@@ -36,12 +36,18 @@ class ImuGuard {
     double velocity = 0.0;  ///< (m/s)^2
     double turn = 0.0;      ///< rad^2
   };
+  /// What is wrong with a sample.
+  struct Verdict {
+    bool beyond = false, frozen = false, accelerometer_saturated = false, gyroscope_saturated = false;
+  };
   /// `counters` must outlive it.
   ImuGuard(const ImuGuardParams& params, Counters& counters);
   /// False: counted, not to be used. Throws std::runtime_error when the units cannot be right. Finite values.
   bool usable(const ImuSample& sample);
   /// What the newest sample adds to the doubt in the motion up to it.
   [[nodiscard]] const Doubt& doubt() const { return doubt_; }
+  /// Of the newest sample.
+  [[nodiscard]] const Verdict& verdict() const { return verdict_; }
 
  private:
   /// Three axes that share a range.
@@ -69,6 +75,7 @@ class ImuGuard {
   Group accel_, gyro_;
   std::optional<ImuSample> before_;
   Doubt doubt_;
+  Verdict verdict_;
   double period_s_ = 0.0;
   bool is_frozen_ = false;
   int varied_ = 0, same_ = 0;

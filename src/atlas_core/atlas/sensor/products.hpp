@@ -125,4 +125,19 @@ struct DepthImage {
 };
 using DepthImagePtr = std::shared_ptr<const DepthImage>;
 
+/// Something that a sensor does and a sound one does not.
+struct SensorAnomaly {
+  std::string name;
+  double value = 0, threshold = 0;  ///< of the newest measurement beyond the threshold
+  std::string unit;                 ///< of both
+  Stamp since = 0;
+};
+/// How far a sensor can be believed: once a second of event time, and when its anomalies change.
+struct SensorStatus {
+  Stamp stamp = 0;
+  std::string sensor;  ///< e.g. "lidar_left"
+  double score = 1;    ///< 0..1
+  std::vector<SensorAnomaly> anomalies;
+};
+
 }  // namespace atlas
