@@ -9,6 +9,7 @@
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <opencv2/core/utility.hpp>
 #include <set>
 #include <stdexcept>
 
@@ -77,6 +78,7 @@ class Configuration {
 void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const ReplayOptions& options) {
   using atlas_ros::readParams;
   const auto decoder = configuration.section<VideoDecodeParams>("video_decoder");
+  graph.beginThread();  // beside reading and unpacking
   graph.add([&](atlas::LocalGraph::Bus& bus) { return bindVideoDecoder(bus, decoder); });
   atlas::PipelineParams params;
   params.localization = configuration.section<atlas::LocalizationParams>("localization");
@@ -126,7 +128,9 @@ atlas::RunSummary replay(const ReplayOptions& options) {
           : packageFile("atlas_bringup", "config/" + configurationFor(reader->streams()) + ".yaml");
   Configuration configuration(config);
   std::filesystem::create_directories(options.out);
-  atlas::LocalGraph graph;
+  cv::setNumThreads(1);  // the stages share the cores, OpenCV's own threads would only be in their way
+  using Threads = atlas::LocalGraph::Threads;
+  atlas::LocalGraph graph(options.one_thread ? Threads::kOne : Threads::kSeveral);
   buildGraph(graph, configuration, options);
 
   atlas::RunSummary summary;

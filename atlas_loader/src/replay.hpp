@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The offline replay: reads events in order and feeds the pipeline and the writers in one thread.
+// The offline replay: reads events in order and feeds the pipeline and the writers.
 #pragma once
 
 #include <string>
@@ -15,6 +15,7 @@ struct ReplayOptions {
   std::string out;
   std::string config;              ///< YAML file; "" = packaged
   std::vector<std::string> write;  ///< extra outputs: "deskewed"
+  bool one_thread = false;         ///< instead of several, with the same outputs
   bool smooth = false;             ///< two passes: positioning and smoothing first
 };
 

@@ -34,6 +34,10 @@ class Determinism(WholeRun):
         self.replay_offline(["--bag", self.bag], self.folder / "offline_again")
         self.check(self.folder / "offline_again")
 
+    def test_a_offline_in_one_thread(self):
+        self.replay_offline(["--bag", self.bag, "--one-thread"], self.folder / "offline_one_thread")
+        self.check(self.folder / "offline_one_thread")
+
     def test_a_offline_from_the_record(self):
         self.replay_offline(["--record", self.record], self.folder / "offline_record")
         self.check(self.folder / "offline_record")

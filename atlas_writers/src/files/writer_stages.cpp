@@ -26,6 +26,7 @@ void closeQuietly(const char* what, Close&& close) {
 
 void addWriters(LocalGraph& graph, const WriterParams& params, const std::string& out) {
   using Bus = LocalGraph::Bus;
+  graph.beginThread();
   graph.add([&](Bus& bus) { return bindTrajectoryWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindMapWriter(bus, params.map, out); });
   graph.add([&](Bus& bus) { return bindDepthWriter(bus, params.depth, out); });

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <random>
+#include <stdexcept>
 
 namespace atlas {
 namespace {
@@ -193,6 +195,88 @@ TEST(LocalGraph, ArrivalOrderHasNoInfluence) {
     if (run == 0) expected = values(log);
     EXPECT_EQ(values(log), expected) << "run " << run;
     EXPECT_EQ(log.size(), 100U);
+  }
+}
+
+/// Remembers every call: what was pushed and how far the inputs had come.
+class TraceStage : public Stage {
+ public:
+  explicit TraceStage(std::size_t inputs) : Stage("trace", std::vector<std::string>(inputs, "number")) {}
+  void push(std::size_t input, const Number& number) {
+    calls.push_back({static_cast<Stamp>(input), number.stamp, number.value});
+    enqueue(input, number.stamp, [this, number] {
+      if (on_number) on_number({number.stamp, number.value + 1});
+    });
+  }
+  std::function<void(const Number&)> on_number;
+  std::vector<std::array<Stamp, 3>> calls;
+
+ protected:
+  void onProgress() override { calls.push_back({-1, merge().watermark(), progress()}); }
+};
+LocalGraph::Bind traceOf(const std::vector<std::string>& topics, const std::string& result) {
+  return [=](LocalGraph::Bus& bus) -> StageFactory {
+    for (std::size_t i = 0; i < topics.size(); ++i)
+      bus.input<TraceStage, Number>(i, topics[i], [i](TraceStage& s, const Number& n) { s.push(i, n); });
+    const auto emit = bus.output<Number>(result);
+    return [=] {
+      auto stage = std::make_unique<TraceStage>(topics.size());
+      stage->on_number = emit;
+      return stage;
+    };
+  };
+}
+
+TEST(LocalGraph, EveryStageSeesTheSameCallsWithSeveralThreads) {
+  const auto run = [](LocalGraph::Threads threads) {
+    LocalGraph graph(threads);
+    graph.add(traceOf({"a", "b"}, "callers_own"));
+    graph.beginThread();
+    graph.add(traceOf({"callers_own", "b"}, "first"));
+    graph.add(traceOf({"first", "a"}, "second"));
+    graph.beginThread();
+    graph.add(traceOf({"a", "first", "second"}, "third"));
+    graph.beginThread();
+    graph.add(traceOf({"b", "callers_own", "third", "first"}, "fourth"));
+    graph.add(traceOf({"fourth", "second"}, "fifth"));
+    std::mt19937 random(11);
+    for (int i = 1; i <= 3000; ++i) {
+      graph.publish(random() % 2 == 0 ? "a" : "b", Number{i, static_cast<int>(random() % 100)});
+      if (random() % 3 == 0) graph.advance(i);
+    }
+    graph.finish();
+    std::vector<std::vector<std::array<Stamp, 3>>> calls;
+    for (const Stage* stage : graph.stages()) calls.push_back(static_cast<const TraceStage*>(stage)->calls);
+    return calls;
+  };
+  const auto expected = run(LocalGraph::Threads::kOne);
+  ASSERT_EQ(expected.size(), 6U);
+  EXPECT_GT(expected.back().size(), 3000U);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(run(LocalGraph::Threads::kSeveral), expected);
+}
+
+TEST(LocalGraph, WhatAStageOfAnotherThreadThrowsReachesTheCaller) {
+  const auto graph = std::make_unique<LocalGraph>(LocalGraph::Threads::kSeveral);
+  graph->add(traceOf({"a"}, "first"));
+  graph->beginThread();
+  graph->add(traceOf({"first"}, "second"));
+  graph->beginThread();
+  graph->add([](LocalGraph::Bus& bus) -> StageFactory {
+    bus.input<TraceStage, Number>(0, "second", [](TraceStage& s, const Number& n) {
+      if (n.value == 7 + 2) throw std::runtime_error("disk full at " + std::to_string(n.stamp));
+      s.push(0, n);
+    });
+    return [] { return std::make_unique<TraceStage>(1); };
+  });
+  try {
+    for (int i = 1; i <= 100'000; ++i) {
+      graph->publish("a", Number{i, i});
+      graph->advance(i);
+    }
+    graph->finish();
+    FAIL() << "nothing was thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "disk full at 7");
   }
 }
 
