@@ -48,6 +48,7 @@ Spread spreadOf(const std::vector<double>& values) {
 /// duration of a sweep, which is what mistaking its start for its end, or its end for its start, amounts to.
 struct Window : std::map<DeskewWay, MapQuality> {
   double earlier = 0, later = 0;  ///< mean entropy
+  std::map<DeskewWay, SkewLeft> skew_left;
 };
 constexpr DeskewWay kWays[] = {DeskewWay::kPerPoint, DeskewWay::kBatches100, DeskewWay::kNone,
                                DeskewWay::kReversed};
@@ -72,6 +73,10 @@ std::optional<Window> judge(const std::vector<SweepPtr>& sweeps, const Arguments
     const auto quality = qualityOf(sweeps, way, trajectory, T_imu_lidar, params);
     if (!quality || quality->neighbourhoods == 0) return std::nullopt;
     window[way] = *quality;
+    MapQualityParams more = params;  // few neighbourhoods are plane and seen in different phases
+    more.every = std::max<std::size_t>(1, params.every / 4);
+    const auto skew_left = skewLeftOf(sweeps, way, trajectory, T_imu_lidar, more);
+    if (skew_left && skew_left->neighbourhoods > 0) window.skew_left[way] = *skew_left;
   }
   const auto shifted = [&](Duration shift) {
     const auto quality = qualityOf(sweeps, DeskewWay::kPerPoint, trajectory, T_imu_lidar, params, shift);
@@ -154,6 +159,25 @@ void printWindows(const std::string& topic, const std::vector<Window>& windows,
   }
 }
 
+/// How much of the skew the surfaces say is left: 0 none, 1 as without de-skew.
+void printSkewLeft(const std::vector<Window>& windows, nlohmann::ordered_json& json) {
+  for (const DeskewWay way : kWays) {
+    std::vector<double> shares;
+    std::size_t neighbourhoods = 0;
+    for (const Window& window : windows) {
+      const auto found = window.skew_left.find(way);
+      if (found == window.skew_left.end()) continue;
+      shares.push_back(found->second.share);
+      neighbourhoods += found->second.neighbourhoods;
+    }
+    if (shares.empty()) continue;
+    const Spread spread = spreadOf(shares);
+    std::printf("skew left, %-11s: %.3f +- %.3f (%zu windows, %zu neighbourhoods)\n", toString(way),
+                spread.mean, spread.error, shares.size(), neighbourhoods);
+    json["skew_left"][toString(way)] = {spread.mean, spread.error};
+  }
+}
+
 /// Which moment of a sweep the stamps mark, as the sharpness of the map has it.
 void printStamps(const std::vector<Window>& windows, nlohmann::ordered_json& json) {
   std::vector<double> earlier, later;
@@ -205,6 +229,7 @@ void judgeRecording(Arguments arguments, nlohmann::ordered_json& json) {
   const Results results = measure(arguments, run);
   for (const auto& [topic, windows] : results.windows) {
     printWindows(topic, windows, json["windows"]);
+    printSkewLeft(windows, json["windows"][topic]);
     printStamps(windows, json["windows"][topic]);
   }
   for (const auto& [topic, count] : results.passed_over)

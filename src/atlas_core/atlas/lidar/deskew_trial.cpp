@@ -92,16 +92,44 @@ Outcome<std::vector<LidarPoint>> placed(const SweepPtr& sweep, DeskewWay way, co
   return inMap(*batched).points;
 }
 
-Outcome<MapQuality> qualityOf(const std::vector<SweepPtr>& sweeps, DeskewWay way,
-                              const Trajectory& trajectory, const Pose& T_imu_lidar,
-                              const MapQualityParams& params, Duration stamp_shift) {
+Outcome<std::vector<LidarPoint>> placedTogether(const std::vector<SweepPtr>& sweeps, DeskewWay way,
+                                                const Trajectory& trajectory, const Pose& T_imu_lidar,
+                                                Duration stamp_shift) {
   std::vector<LidarPoint> all;
   for (const SweepPtr& sweep : sweeps) {
     const auto points = placed(sweep, way, trajectory, T_imu_lidar, stamp_shift);
     if (!points) return points.reason();
     all.insert(all.end(), points->begin(), points->end());
   }
-  return mapQuality(all, params);
+  return all;
+}
+
+Outcome<MapQuality> qualityOf(const std::vector<SweepPtr>& sweeps, DeskewWay way,
+                              const Trajectory& trajectory, const Pose& T_imu_lidar,
+                              const MapQualityParams& params, Duration stamp_shift) {
+  const auto points = placedTogether(sweeps, way, trajectory, T_imu_lidar, stamp_shift);
+  if (!points) return points.reason();
+  return mapQuality(*points, params);
+}
+
+Outcome<SkewLeft> skewLeftOf(const std::vector<SweepPtr>& sweeps, DeskewWay way, const Trajectory& trajectory,
+                             const Pose& T_imu_lidar, const MapQualityParams& params) {
+  const auto points = placedTogether(sweeps, way, trajectory, T_imu_lidar);
+  const auto skewed = placedTogether(sweeps, DeskewWay::kNone, trajectory, T_imu_lidar);
+  const auto right = placedTogether(sweeps, DeskewWay::kPerPoint, trajectory, T_imu_lidar);
+  if (!points) return points.reason();
+  if (!skewed) return skewed.reason();
+  if (!right) return right.reason();
+  std::vector<Skew> skews;
+  skews.reserve(points->size());
+  for (const SweepPtr& sweep : sweeps) {
+    const auto time_s = static_cast<float>(toSeconds(sweep->stamp - sweeps.front()->stamp));
+    for (std::size_t i = 0; i < sweep->points.size(); ++i) {
+      const LidarPoint &a = (*right)[skews.size()], &b = (*skewed)[skews.size()];
+      skews.push_back({{b.x - a.x, b.y - a.y, b.z - a.z}, time_s});
+    }
+  }
+  return skewLeft(*points, skews, params);
 }
 
 }  // namespace atlas

@@ -9,6 +9,7 @@
 #include "atlas/base/outcome.hpp"
 #include "atlas/base/trajectory.hpp"
 #include "atlas/lidar/map_quality.hpp"
+#include "atlas/lidar/skew_left.hpp"
 #include "atlas/sensor/sensor.hpp"
 
 namespace atlas {
@@ -31,9 +32,21 @@ const char* toString(DeskewWay way);
                                                       const Trajectory& trajectory, const Pose& T_imu_lidar,
                                                       Duration stamp_shift = 0);
 
-/// Map quality of consecutive sweeps put together.
+/// Consecutive sweeps put together, one after the other.
+[[nodiscard]] Outcome<std::vector<LidarPoint>> placedTogether(const std::vector<SweepPtr>& sweeps,
+                                                              DeskewWay way, const Trajectory& trajectory,
+                                                              const Pose& T_imu_lidar,
+                                                              Duration stamp_shift = 0);
+
+/// Their map quality.
 [[nodiscard]] Outcome<MapQuality> qualityOf(const std::vector<SweepPtr>& sweeps, DeskewWay way,
                                             const Trajectory& trajectory, const Pose& T_imu_lidar,
                                             const MapQualityParams& params, Duration stamp_shift = 0);
+
+/// The skew that this way leaves in the map of consecutive sweeps; shifts are the difference between kNone
+/// and kPerPoint.
+[[nodiscard]] Outcome<SkewLeft> skewLeftOf(const std::vector<SweepPtr>& sweeps, DeskewWay way,
+                                           const Trajectory& trajectory, const Pose& T_imu_lidar,
+                                           const MapQualityParams& params);
 
 }  // namespace atlas
