@@ -42,8 +42,8 @@ inline double areaOf(const std::vector<Eigen::Vector2d>& polygon) {
   return 0.5 * twice;
 }
 
-/// Intersection over union of the areas (Sutherland and Hodgman 1974: a's polygon cut by the sides of b).
-inline double overlapOfAreas(const PlanBox& a, const PlanBox& b) {
+/// Area that both cover (Sutherland and Hodgman 1974: a's polygon cut by the sides of b).
+inline double sharedArea(const PlanBox& a, const PlanBox& b) {
   std::vector<Eigen::Vector2d> polygon = a.corners();
   const std::vector<Eigen::Vector2d> sides = b.corners();
   for (std::size_t k = 0; k < sides.size() && !polygon.empty(); ++k) {
@@ -60,7 +60,12 @@ inline double overlapOfAreas(const PlanBox& a, const PlanBox& b) {
     }
     polygon = std::move(cut);
   }
-  const double both = std::max(0.0, areaOf(polygon));
+  return std::max(0.0, areaOf(polygon));
+}
+
+/// Intersection over union of the areas.
+inline double overlapOfAreas(const PlanBox& a, const PlanBox& b) {
+  const double both = sharedArea(a, b);
   const double either = a.length * a.width + b.length * b.width - both;
   return either > 0.0 ? both / either : 0.0;
 }

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "atlas/fusion/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atlas/base/geometry.hpp"
+
+namespace atlas {
+namespace {
+
+constexpr double kLasting_s = 60.0,
+                 kUnseenLasting_s = 10.0;  ///< an object leaves, or was none, after so long
+constexpr double kUnseen_s = 0.35;         ///< without a measurement
+constexpr double kMostCertain = 0.999;
+constexpr double kClimb_mps2_sqrt_s = 0.3, kClimb_mps = 0.3;  ///< slopes of roads
+constexpr double kHeightWalk_m_sqrt_s = 0.05;
+constexpr double kSurelyForward = 8.0, kWholeBoxForward = 3.0;  ///< log odds
+
+}  // namespace
+
+Track::Track(std::uint32_t id, Stamp stamp, const TrackBirth& birth,
+             std::shared_ptr<const MotionModels> models, std::shared_ptr<const ClassModel> classes)
+    : id_(id),
+      born_(stamp),
+      stamp_(stamp),
+      seen_(stamp),
+      classes_(std::move(classes)),
+      filter_(std::move(models), birth.shape.state, classes_->physics(classes_->classes()).motion),
+      yaw_rad_(wrapAngle(birth.shape.yaw_rad)),
+      yaw_variance_rad2_(birth.shape.yaw_variance_rad2),
+      forward_log_odds_(birth.heading_known ? kWholeBoxForward : 0.0),
+      z_(birth.shape.middle_z_m.value, 0.0),
+      z_covariance_(Eigen::Vector2d(birth.shape.middle_z_m.variance, kClimb_mps * kClimb_mps).asDiagonal()),
+      height_m_(birth.shape.height_m),
+      belief_(classes_->prior()),
+      sized_(classes_->classes(), 0),
+      existence_(birth.existence) {}
+
+const ClassPhysics& Track::physics() const { return classes_->physics(ClassModel::likeliest(belief_)); }
+
+void Track::predict(Stamp stamp) {
+  const double dt_s = toSeconds(stamp - stamp_);
+  if (dt_s <= 0.0) return;
+  stamp_ = stamp;
+  filter_.predict(dt_s, physics().motion);
+  const double turn = filter_.estimate().mean(kTurnRate) * (1.0 - filter_.standingProbability());
+  yaw_rad_ = wrapAngle(yaw_rad_ + turn * dt_s);
+  const double turn_sigma = 0.02 + 0.3 * (1.0 - filter_.standingProbability());
+  yaw_variance_rad2_ = std::min(yaw_variance_rad2_ + turn_sigma * turn_sigma * dt_s, 3.0);
+  Eigen::Matrix2d F;
+  F << 1.0, dt_s, 0.0, std::exp(-dt_s);
+  z_ = F * z_;
+  z_covariance_ = F * z_covariance_ * F.transpose();
+  z_covariance_(1, 1) += kClimb_mps2_sqrt_s * kClimb_mps2_sqrt_s * dt_s;
+  height_m_.variance += kHeightWalk_m_sqrt_s * kHeightWalk_m_sqrt_s * dt_s;
+  const bool unseen = toSeconds(stamp_ - seen_) > kUnseen_s;
+  existence_ *= std::exp(-dt_s / (unseen ? kUnseenLasting_s : kLasting_s));
+}
+
+TrackShape Track::shape() const {
+  TrackShape shape;
+  shape.state = filter_.estimate();
+  shape.yaw_rad = yaw_rad_;
+  shape.yaw_variance_rad2 = yaw_variance_rad2_;
+  shape.steers = physics().steers;
+  shape.middle_z_m = {z_.x(), z_covariance_(0, 0)};
+  shape.height_m = height_m_;
+  return shape;
+}
+
+void Track::update(const Measurement& measurement, double robust_sigmas) {
+  const Measured measured = measurement.measured(shape());
+  filter_.update(measured.rows, robust_sigmas);
+  if (measured.yaw) readYaw(*measured.yaw);
+  if (measured.middle_z_m) {
+    const double s = z_covariance_(0, 0) + measured.middle_z_m->variance;
+    const Eigen::Vector2d K = z_covariance_.col(0) / s;
+    z_ += K * (measured.middle_z_m->value - z_.x());
+    z_covariance_ -= K * K.transpose() * s;
+  }
+  if (measured.height_m) {
+    const double K = height_m_.variance / (height_m_.variance + measured.height_m->variance);
+    height_m_.value += K * (measured.height_m->value - height_m_.value);
+    height_m_.variance *= 1.0 - K;
+  }
+  followCourse();
+  applySize();
+  seen_ = stamp_;
+}
+
+void Track::witness(const Measurement& measurement, const std::string& input) {
+  if (measurement.coco_class >= 0) classes_->update(belief_, measurement.coco_class, measurement.confidence);
+  const double odds = existence_ / (1.0 - std::min(existence_, kMostCertain)) * measurement.existence_ratio;
+  existence_ = std::min(odds / (1.0 + odds), kMostCertain);
+  if (measurement.score) {
+    score_sum_ += *measurement.score;
+    ++scores_;
+  }
+  sources_.push_back({input, stamp_, measurement.index});
+}
+
+void Track::miss(double detectability) {
+  existence_ *= (1.0 - detectability) / (1.0 - existence_ * detectability);
+}
+
+bool Track::finite() const {
+  return filter_.estimate().mean.allFinite() && filter_.estimate().covariance.allFinite() &&
+         std::isfinite(yaw_rad_);
+}
+
+double Track::positionSigma() const {
+  const auto& P = filter_.estimate().covariance;
+  return std::sqrt(std::max(P(kPx, kPx), P(kPy, kPy)));
+}
+
+Object Track::report(double static_from) {
+  const TrackState& state = filter_.estimate();
+  Object object;
+  object.id = id_;
+  const std::size_t likeliest = ClassModel::likeliest(belief_);
+  object.class_id = likeliest < classes_->classes() ? classes_->coco(likeliest) : -1;
+  object.class_probability = belief_[likeliest];
+  object.class_probabilities = belief_;
+  object.existence = existence_;
+  object.position = {state.mean(kPx), state.mean(kPy), z_.x()};
+  object.yaw_rad = yaw_rad_;
+  object.heading_known = forward_log_odds_ > 1.0;
+  object.size = {state.mean(kLength), state.mean(kWidth), height_m_.value};
+  object.velocity_mps = {state.mean(kVx), state.mean(kVy), z_.y()};
+  object.yaw_rate_radps = state.mean(kTurnRate);
+  for (int i = 0; i < 25; ++i)
+    object.covariance[static_cast<std::size_t>(i)] = state.covariance(i / 5, i % 5);
+  object.z_variance_m2 = z_covariance_(0, 0);
+  object.yaw_variance_rad2 = yaw_variance_rad2_;
+  object.static_probability = filter_.standingProbability();
+  object.is_static = object.static_probability >= static_from;
+  object.age_s = toSeconds(stamp_ - born_);
+  object.unseen_s = toSeconds(stamp_ - seen_);
+  object.detectability = detectability_;
+  object.score = scores_ > 0 ? score_sum_ / scores_ : 0.0;
+  object.sources.swap(sources_);
+  object.history.assign(history_.begin(), history_.end());
+  return object;
+}
+
+void Track::remember(std::size_t most) {
+  const TrackVector& mean = filter_.estimate().mean;
+  history_.push_back({stamp_, {mean(kPx), mean(kPy), z_.x()}, {mean(kVx), mean(kVy), z_.y()}, yaw_rad_});
+  while (history_.size() > most) history_.pop_front();
+}
+
+}  // namespace atlas
