@@ -9,7 +9,8 @@
 //   <lidar>/batches, odometry            -> obstacles    -> obstacles
 //   <camera>/detections, batches         -> camera_lidar -> <camera>/frustums,
 //                                                           frustums (all cameras, merged)
-//   <camera>/frustums, IR camera_info    -> thermal      -> camera_ir/projected_detections
+//   <camera>/frustums, IR camera_info,
+//   batches                              -> thermal      -> camera_ir/projected_detections
 //   batches, <camera>/camera_info        -> depth        -> <camera>/depth/image
 //
 // Each bindXxx names a stage's inputs and outputs once. The nodelets bind the same functions to topics
@@ -168,6 +169,7 @@ StageFactory bindThermal(Bus& bus, const ThermalParams& params) {
   bus.template input<S, CameraInfo>(S::kThermalInfo, params.thermal_camera + "/camera_info",
                                     [](S& s, const CameraInfo& info) { s.pushThermal(info); });
   inputs<S, Frustums>(bus, S::kFirstCamera, params.cameras, "/frustums");
+  inputs<S, BatchedSweepPtr>(bus, S::kFirstCamera + params.cameras.size(), params.lidars, "/batches");
   const auto projected =
       bus.template output<ProjectedDetections>(params.thermal_camera + "/projected_detections");
   return [=] {

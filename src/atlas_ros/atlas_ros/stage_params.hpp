@@ -108,7 +108,13 @@ template <class Reader>
 void readParams(Reader& reader, atlas::ThermalParams& p) {
   reader.read("thermal_camera", p.thermal_camera);
   reader.read("cameras", p.cameras);
+  reader.read("lidars", p.lidars);
   reader.read("max_time_difference_s", p.max_time_difference_s);
+  reader.read("neighbour_s", p.neighbour_s);
+  reader.read("bridged_confidence", p.bridged_confidence);
+  reader.read("max_hidden_fraction", p.max_hidden_fraction);
+  reader.read("look_ahead_s", p.look_ahead_s);
+  reader.read("recent_s", p.recent_s);
   reader.read("min_box_px", p.min_box_px);
   reader.read("min_visible_fraction", p.min_visible_fraction);
   reader.read("max_pose_gap_s", p.max_pose_gap_s);

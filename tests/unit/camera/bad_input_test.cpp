@@ -99,6 +99,7 @@ TEST(BadCameraInput, thermalFramesOfOtherSizesAndWithoutIntrinsics) {
   ThermalParams params;
   params.thermal_camera = "camera";
   params.cameras = {"rgb"};
+  params.lidars = {};
   ThermalStage stage(params);
   std::vector<ProjectedDetections> answers;
   stage.on_projected = [&](const ProjectedDetections& p) { answers.push_back(p); };

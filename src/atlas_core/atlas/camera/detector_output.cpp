@@ -9,6 +9,8 @@
 #include <string>
 #include <tuple>
 
+#include "atlas/camera/box_overlap.hpp"
+
 namespace atlas {
 namespace {
 
@@ -51,14 +53,6 @@ Rows rowsOf(const cv::Mat& output, int classes) {
                              (classes > 0 ? " of " + std::to_string(classes) + " classes" : ""));
   }
   return rows;
-}
-
-double overlapOf(const Detection2d& a, const Detection2d& b) {
-  const double width = std::min(a.x_max, b.x_max) - std::max(a.x_min, b.x_min);
-  const double height = std::min(a.y_max, b.y_max) - std::max(a.y_min, b.y_min);
-  if (width <= 0.0 || height <= 0.0) return 0.0;
-  const auto area = [](const Detection2d& box) { return (box.x_max - box.x_min) * (box.y_max - box.y_min); };
-  return width * height / (area(a) + area(b) - width * height);
 }
 
 /// The box of a row if it is sure enough; false for what is no box.

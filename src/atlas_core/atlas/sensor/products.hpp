@@ -112,7 +112,9 @@ struct ProjectedDetections {
   Detections detections;  ///< stamp, frame and index of the thermal image; boxes clipped to it
   bool selected = false;  ///< some RGB image chose this thermal frame (false: an empty answer only)
   std::vector<Stamp> source_stamps;         ///< RGB images that chose it
-  std::vector<std::uint32_t> source_index;  ///< per box: index of the frustum in its source
+  /// Per box: index of the frustum in its source; the largest number for an object missed there, but seen in
+  /// the images before and after.
+  std::vector<std::uint32_t> source_index;
 };
 
 /// Dense or sparse z-depth registered to an image (REP-118): 32FC1, m, NaN where unknown.
