@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "atlas/output/depth_png.hpp"
+#include "atlas/output/png.hpp"
 #include "files/output_file.hpp"
 
 namespace atlas {
