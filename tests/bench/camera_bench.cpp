@@ -50,11 +50,10 @@ BatchedSweep makeSweep(std::size_t count) {
 }
 
 /// What the depth stage does with the points.
-cv::Mat render(DepthBuffer& buffer, double focal_px) {
+DepthBuffer::Images render(DepthBuffer& buffer, double focal_px) {
   const double line_gap_px = focal_px * 1.5 * M_PI / 180.0;
   buffer.removeInvisible({line_gap_px, 0.03, 0.15});
-  buffer.fill({focal_px, 0.3, line_gap_px, 0.12});
-  return buffer.image();
+  return buffer.takeFilled({focal_px, 0.3, line_gap_px, 0.12});
 }
 
 // The left front camera of the Brno Urban Dataset.
@@ -81,9 +80,9 @@ void depthImageOf(benchmark::State& state, const CameraInfo& info) {
   IntrinsicsCache cache(0.5, 100.0);
   const Intrinsics& intrinsics = cache.of(info).value();
   const Pose T_camera_map = forwardCamera();
+  DepthBuffer buffer(intrinsics.model.width(), intrinsics.model.height());
   std::size_t seen = 0;
   for (auto _ : state) {
-    DepthBuffer buffer(intrinsics.model.width(), intrinsics.model.height());
     seen = 0;
     for (std::size_t i = 0; i < sweeps; ++i) {
       intrinsics.projector.projectSweep(*sweep, T_camera_map, [&](const ProjectedPoint& point) {
@@ -91,7 +90,7 @@ void depthImageOf(benchmark::State& state, const CameraInfo& info) {
         ++seen;
       });
     }
-    benchmark::DoNotOptimize(render(buffer, intrinsics.model.fx()).data);
+    benchmark::DoNotOptimize(render(buffer, intrinsics.model.fx()).depth.data);
   }
   state.counters["points"] = static_cast<double>(70000 * sweeps);
   state.counters["seen"] = static_cast<double>(seen);

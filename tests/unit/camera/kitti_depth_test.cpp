@@ -57,8 +57,8 @@ enum class Kind { kPoints, kVisible, kFilled };
 cv::Mat finished(DepthBuffer& buffer, double focal_px, Kind kind) {
   const double line_gap_px = focal_px * kLineGapDeg * M_PI / 180.0;
   if (kind != Kind::kPoints) buffer.removeInvisible({line_gap_px, 0.03, 0.15});
-  if (kind == Kind::kFilled) buffer.fill({focal_px, 0.3, line_gap_px, 0.12});
-  return buffer.image();
+  if (kind != Kind::kFilled) return buffer.image();
+  return buffer.takeFilled({focal_px, 0.3, line_gap_px, 0.12}).depth;
 }
 
 /// The cars of an object map: their boxes, and the depth where each begins by the true disparity.

@@ -29,6 +29,39 @@ cv::Mat both(const cv::Mat& a, const cv::Mat& b) {
   cv::min(a, b, joined);
   return joined;
 }
+PixelSet pixelsOf(const cv::Mat& image) {
+  PixelSet pixels(image.cols, image.rows);
+  for (int row = 0; row < image.rows; ++row) {
+    for (int column = 0; column < image.cols; ++column) {
+      if (image.at<float>(row, column) != kNoDepth) pixels.add(row, column);
+    }
+  }
+  return pixels;
+}
+SparseDepth sparse(const cv::Mat& image) {
+  SparseDepth result(image.cols, image.rows);
+  result.depth = image.clone();
+  result.pixels = pixelsOf(image);
+  return result;
+}
+/// What is left of the image; its pixels are those with a depth.
+cv::Mat visibleOf(const cv::Mat& image) {
+  SparseDepth seen = sparse(image);
+  removeHidden(seen, {14.0, 0.05, 0.2});
+  seen.pixels.forEach([&](int row, int column) { EXPECT_NE(seen.depth.at<float>(row, column), kNoDepth); });
+  return seen.depth;
+}
+cv::Mat upToDateOf(const cv::Mat& older, const cv::Mat& recent) {
+  SparseDepth left = sparse(older);
+  removeOutdated(left, sparse(recent), {14.0, 0.05, 0.2});
+  return left.depth;
+}
+/// Fills in place; the confidence.
+cv::Mat filled(cv::Mat& depth, const GapFillingParams& params) {
+  cv::Mat confidence(depth.size(), CV_32FC1, cv::Scalar(0));
+  fillGaps(depth, confidence, pixelsOf(depth), params);
+  return confidence;
+}
 int countIf(const cv::Mat& image, const std::function<bool(float)>& wanted) {
   int count = 0;
   for (int row = 0; row < image.rows; ++row) {
@@ -45,8 +78,7 @@ int countOf(const cv::Mat& image, float depth) {
 TEST(RemoveHidden, wallBehindTheLinesOfACarGoesAndBesideItStays) {
   const cv::Mat car = lines(0, 12, 40, 80, [](int, int) { return 10.0F; });
   const cv::Mat wall = lines(6, 12, 0, kWidth, [](int, int) { return 25.0F; });
-  cv::Mat seen = both(car, wall);
-  removeHidden(seen, {14.0, 0.05, 0.2});
+  const cv::Mat seen = visibleOf(both(car, wall));
   EXPECT_EQ(countOf(seen, 10.0F), countOf(car, 10.0F)) << "nothing of the car";
   for (int row = 6; row < kHeight - 12; row += 12) {
     for (int column = 0; column < kWidth; column += 2) {
@@ -65,8 +97,7 @@ TEST(RemoveHidden, wallBehindTheLinesOfACarGoesAndBesideItStays) {
 // road comes nearer sideways; where two walls meet both neighbours are nearer, by little.
 TEST(RemoveHidden, surfacesAndWhatIsBesideAPoleStay) {
   const auto unchanged = [](const cv::Mat& image) {
-    cv::Mat seen = image.clone();
-    removeHidden(seen, {14.0, 0.05, 0.2});
+    const cv::Mat seen = visibleOf(image);
     return countIf(image, [](float z) { return z != kNoDepth; }) -
            countIf(seen, [](float z) { return z != kNoDepth; });
   };
@@ -79,29 +110,25 @@ TEST(RemoveHidden, surfacesAndWhatIsBesideAPoleStay) {
             0);
   const cv::Mat pole = lines(0, 12, 58, 60, [](int, int) { return 8.0F; });
   const cv::Mat wall = lines(6, 12, 66, kWidth, [](int, int) { return 30.0F; });
-  cv::Mat seen = both(pole, wall);
-  removeHidden(seen, {14.0, 0.05, 0.2});
+  const cv::Mat seen = visibleOf(both(pole, wall));
   EXPECT_EQ(countOf(seen, 30.0F), countOf(wall, 30.0F));
 }
 
 // A car has driven away from 10 m to 16 m, another has come from 30 m to 20 m in front of a wall that stands.
 TEST(RemoveOutdated, whatHasMovedIsOnlyWhereItIsNow) {
   const auto car = [](float depth) { return [depth](int, int) { return depth; }; };
-  cv::Mat older = both(lines(3, 12, 20, 50, car(10.0F)), lines(3, 12, 70, 100, car(30.0F)));
+  const cv::Mat older = both(lines(3, 12, 20, 50, car(10.0F)), lines(3, 12, 70, 100, car(30.0F)));
   const cv::Mat recent = both(lines(0, 12, 20, 50, car(16.0F)), lines(0, 12, 70, 100, car(20.0F)));
-  removeOutdated(older, recent, {14.0, 0.05, 0.2});
-  EXPECT_EQ(countIf(older, [](float z) { return z != kNoDepth; }), 0);
+  EXPECT_EQ(countIf(upToDateOf(older, recent), [](float z) { return z != kNoDepth; }), 0);
 }
 
 TEST(RemoveOutdated, whatStandsStays) {
   const auto road = [](int row, int) { return 900.0F / static_cast<float>(row); };
   cv::Mat before = lines(29, 12, 0, kWidth, road);
   before.row(89).setTo(kNoDepth);  // below the last recent line nothing says how the road goes on
-  cv::Mat older = before.clone();
-  removeOutdated(older, lines(23, 12, 0, kWidth, road), {14.0, 0.05, 0.2});
+  const cv::Mat older = upToDateOf(before, lines(23, 12, 0, kWidth, road));
   EXPECT_EQ(cv::countNonZero(older != before), 0) << "between its own lines a road is between their depths";
-  cv::Mat alone = before.clone();
-  removeOutdated(alone, nothing(), {14.0, 0.05, 0.2});
+  const cv::Mat alone = upToDateOf(before, nothing());
   EXPECT_EQ(cv::countNonZero(alone != before), 0) << "where nothing is recent there is nothing against it";
 }
 
@@ -111,7 +138,7 @@ TEST(FillGaps, planeIsExactAndItsConfidenceFalls) {
     return 1.0F / (0.05F + 0.0004F * static_cast<float>(row) + 0.0001F * static_cast<float>(column));
   };
   cv::Mat depth = lines(0, 8, 0, kWidth, plane);
-  const cv::Mat confidence = fillGaps(depth, {500.0, 1.0, 10.0, 0.12});
+  const cv::Mat confidence = filled(depth, {500.0, 1.0, 10.0, 0.12});
   for (int row = 0; row <= 80; ++row) {
     for (int column = 0; column < kWidth - 1; ++column)
       ASSERT_NEAR(depth.at<float>(row, column), plane(row, column), 1e-4) << row << " " << column;
@@ -126,7 +153,7 @@ TEST(FillGaps, planeIsExactAndItsConfidenceFalls) {
 TEST(FillGaps, nothingBetweenTwoSurfacesNorOverAnOutline) {
   const cv::Mat near = lines(0, 4, 40, 60, [](int, int) { return 10.0F; });
   cv::Mat depth = both(near, lines(0, 4, 64, kWidth, [](int, int) { return 20.0F; }));
-  fillGaps(depth, {500.0, 1.0, 10.0, 0.12});
+  filled(depth, {500.0, 1.0, 10.0, 0.12});
   for (int row = 0; row <= 88; ++row) {
     for (int column = 0; column < kWidth; ++column) {
       const float z = depth.at<float>(row, column);
@@ -144,7 +171,7 @@ TEST(FillGaps, nothingBetweenTwoSurfacesNorOverAnOutline) {
 TEST(FillGaps, gapGrowsAsTheSurfaceComesNear) {
   for (const float z : {10.0F, 30.0F}) {
     cv::Mat depth = lines(0, 12, 0, kWidth, [z](int, int) { return z; });
-    fillGaps(depth, {500.0, 0.3, 14.0, 0.12});
+    filled(depth, {500.0, 0.3, 14.0, 0.12});
     EXPECT_FLOAT_EQ(depth.at<float>(6, 10), z == 10.0F ? z : kNoDepth);
     EXPECT_FLOAT_EQ(depth.at<float>(12, 11), z) << "along the line";
   }
@@ -160,6 +187,23 @@ TEST(DepthBuffer, recentAndOlderAreOneImage) {
   EXPECT_EQ(buffer.image().at<float>(3, 8), 4.0F);
   buffer.removeInvisible({4.0, 0.05, 0.2});
   EXPECT_EQ(buffer.image().at<float>(3, 3), 5.0F);
+}
+
+// One buffer makes all images of a camera: nothing of one is left in the next.
+TEST(DepthBuffer, isEmptyAfterAnImage) {
+  DepthBuffer buffer(20, 10);
+  for (int column = 2; column < 10; column += 2)
+    buffer.add({static_cast<float>(column), 3.0F, 7.0F}, column < 6);
+  buffer.removeInvisible({4.0, 0.05, 0.2});
+  const DepthBuffer::Images first = buffer.takeFilled({500.0, 1.0, 10.0, 0.12});
+  EXPECT_FLOAT_EQ(first.depth.at<float>(3, 5), 7.0F);
+  EXPECT_LT(first.confidence.at<float>(3, 5), 1.0F);
+  buffer.add({3.0F, 8.0F, 9.0F}, false);
+  const DepthBuffer::Images second = buffer.takeFilled({500.0, 1.0, 10.0, 0.12});
+  EXPECT_EQ(countIf(second.depth, [](float z) { return !std::isnan(z); }), 1);
+  EXPECT_EQ(second.depth.at<float>(8, 3), 9.0F);
+  EXPECT_EQ(countIf(second.confidence, [](float sure) { return sure != 0.0F; }), 1);
+  EXPECT_FLOAT_EQ(first.depth.at<float>(3, 5), 7.0F) << "the first image is still its own";
 }
 
 }  // namespace

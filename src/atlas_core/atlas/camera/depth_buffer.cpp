@@ -1,35 +1,46 @@
 // SPDX-License-Identifier: MIT
 #include "atlas/camera/depth_buffer.hpp"
 
-#include <opencv2/core.hpp>
+#include <algorithm>
+#include <limits>
 
 namespace atlas {
 
 void DepthBuffer::join() {
-  if (!older_.empty()) cv::min(recent_, older_, recent_);
-  older_.release();
+  older_.pixels.forEach([&](int row, int column) {
+    float &older = older_.depth.ptr<float>(row)[column], &recent = recent_.depth.ptr<float>(row)[column];
+    recent = std::min(recent, older);
+    older = kNoDepth;
+  });
+  recent_.pixels.add(older_.pixels);
+  older_.pixels.clear();
 }
 
 void DepthBuffer::removeInvisible(const VisibilityParams& params) {
-  if (!older_.empty()) removeOutdated(older_, recent_, params);
+  removeOutdated(older_, recent_, params);
   join();
   removeHidden(recent_, params);
 }
 
-cv::Mat DepthBuffer::fill(const GapFillingParams& params) {
+DepthBuffer::Images DepthBuffer::takeFilled(const GapFillingParams& params) {
   join();
-  return fillGaps(recent_, params);
+  Images images;
+  images.depth = image();
+  images.confidence = pool_.take(size(), 0.0F);
+  fillGaps(images.depth, images.confidence, recent_.pixels, params);
+  recent_.pixels.forEach([&](int row, int column) { recent_.depth.ptr<float>(row)[column] = kNoDepth; });
+  recent_.pixels.clear();
+  return images;
 }
 
-cv::Mat DepthBuffer::image() const {
-  cv::Mat depth = older_.empty() ? recent_.clone() : cv::Mat();
-  if (!older_.empty()) cv::min(recent_, older_, depth);
-  for (int row = 0; row < depth.rows; ++row) {
-    float* pixels = depth.ptr<float>(row);
-    for (int column = 0; column < depth.cols; ++column) {
-      if (pixels[column] == kNoDepth) pixels[column] = std::numeric_limits<float>::quiet_NaN();
-    }
-  }
+cv::Mat DepthBuffer::image() {
+  cv::Mat depth = pool_.take(size(), std::numeric_limits<float>::quiet_NaN());
+  older_.pixels.forEach(
+      [&](int row, int column) { depth.ptr<float>(row)[column] = older_.depth.ptr<float>(row)[column]; });
+  recent_.pixels.forEach([&](int row, int column) {
+    depth.ptr<float>(row)[column] =
+        std::min(recent_.depth.ptr<float>(row)[column], older_.depth.ptr<float>(row)[column]);
+  });
   return depth;
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Z-buffer: of all points that fall on a pixel the nearest one counts, so the order of the points has no
 // influence. Points measured about when the image was taken and older (or later) ones are kept apart, as what
-// moves is only where the former are.
+// moves is only where the former are. Costs the time of its points, not of its pixels, once it exists.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
 
 #include "atlas/camera/gap_filling.hpp"
+#include "atlas/camera/image_pool.hpp"
+#include "atlas/camera/pixel_set.hpp"
 #include "atlas/camera/projector.hpp"
 #include "atlas/camera/visibility.hpp"
 
@@ -14,31 +16,41 @@ namespace atlas {
 
 class DepthBuffer {
  public:
-  DepthBuffer(int width, int height)
-      : recent_(height, width, CV_32FC1, cv::Scalar(kNoDepth)), older_(recent_.clone()) {}
+  DepthBuffer(int width, int height) : recent_(width, height), older_(width, height) {}
   DepthBuffer(const DepthBuffer&) = delete;  // a copied cv::Mat is the same pixels
   DepthBuffer& operator=(const DepthBuffer&) = delete;
+  [[nodiscard]] cv::Size size() const { return recent_.depth.size(); }
 
   /// `point` lies in the image (Projector::project).
   void add(const ProjectedPoint& point, bool recent = true) {
     // u, v >= -0.5, so truncation rounds to the nearest
     const int column = static_cast<int>(point.u + 0.5F);
     const int row = static_cast<int>(point.v + 0.5F);
-    float& depth = (recent ? recent_ : older_).ptr<float>(row)[column];
-    if (point.depth_m < depth) depth = point.depth_m;
+    SparseDepth& layer = recent ? recent_ : older_;
+    float& depth = layer.depth.ptr<float>(row)[column];
+    if (!(point.depth_m < depth)) return;
+    depth = point.depth_m;
+    layer.pixels.add(row, column);
   }
 
   /// Only what the camera can see is left; ends the distinction of recent and older.
   void removeInvisible(const VisibilityParams& params);
-  /// Fills between the points of a surface, see fillGaps; the result is the confidence.
-  cv::Mat fill(const GapFillingParams& params);
-  /// The image: CV_32FC1, m; NaN where there is none.
-  [[nodiscard]] cv::Mat image() const;
+
+  /// Images of CV_32FC1.
+  struct Images {
+    cv::Mat depth;       ///< m; NaN where there is none
+    cv::Mat confidence;  ///< see fillGaps
+  };
+  /// With the gaps between the points of a surface filled; leaves the buffer empty for the next image.
+  Images takeFilled(const GapFillingParams& params);
+  /// The depth as it is.
+  [[nodiscard]] cv::Mat image();
 
  private:
   void join();
 
-  cv::Mat recent_, older_;  ///< CV_32FC1, kNoDepth where nothing was seen; older_ is empty once joined
+  SparseDepth recent_, older_;
+  ImagePool pool_;
 };
 
 }  // namespace atlas

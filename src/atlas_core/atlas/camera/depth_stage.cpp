@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <opencv2/core.hpp>
 #include <stdexcept>
 #include <string>
 #include <utility>
-
-#include "atlas/camera/depth_buffer.hpp"
 
 namespace atlas {
 namespace {
@@ -57,7 +57,8 @@ DepthStage::DepthStage(const DepthParams& params)
       poses_(params.max_pose_gap_s),
       window_(fromSeconds(params.window_s)),
       intrinsics_(params.cameras.size(), IntrinsicsCache(params.min_depth_m, params.max_depth_m)),
-      image_count_(params.cameras.size(), 0) {}
+      image_count_(params.cameras.size(), 0),
+      buffers_(params.cameras.size()) {}
 
 void DepthStage::push(Stamp stamp, const StaticTransforms& transforms) {
   enqueue(kTfStatic, stamp, [this, transforms] { rig_.add(transforms); });
@@ -122,13 +123,14 @@ void DepthStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu) 
   if (!intrinsics) {
     counters_.skip("depth image", intrinsics.reason());
   } else {
-    const Outcome<Rendered> rendered = render(waiting, *intrinsics, T_map_imu);
+    const Outcome<DepthBuffer::Images> rendered = render(waiting, *intrinsics, T_map_imu);
     if (rendered) {
       image->depth = rendered->depth;
       confidence->depth = rendered->confidence;
     } else {
       counters_.skip("depth image", rendered.reason());
-      image->depth = DepthBuffer(intrinsics->model.width(), intrinsics->model.height()).image();
+      image->depth = cv::Mat(intrinsics->model.height(), intrinsics->model.width(), CV_32FC1,
+                             cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
     }
   }
   counters_.add("depth images");
@@ -136,13 +138,16 @@ void DepthStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu) 
   if (on_depth) on_depth(waiting.camera, image);
 }
 
-Outcome<DepthStage::Rendered> DepthStage::render(const Waiting& waiting, const Intrinsics& intrinsics,
-                                                 const Outcome<Pose>& T_map_imu) {
+Outcome<DepthBuffer::Images> DepthStage::render(const Waiting& waiting, const Intrinsics& intrinsics,
+                                                const Outcome<Pose>& T_map_imu) {
   if (!T_map_imu) return T_map_imu.reason();
   if (!waiting.T_imu_camera) return waiting.T_imu_camera.reason();
   if (waiting.sweeps.empty()) return Reason::kNoPoints;
   const Pose T_camera_map = (*T_map_imu * *waiting.T_imu_camera).inverse();
-  DepthBuffer buffer(intrinsics.model.width(), intrinsics.model.height());
+  const cv::Size size(intrinsics.model.width(), intrinsics.model.height());
+  std::unique_ptr<DepthBuffer>& kept = buffers_[waiting.camera];
+  if (!kept || kept->size() != size) kept = std::make_unique<DepthBuffer>(size.width, size.height);
+  DepthBuffer& buffer = *kept;
   const Duration near_in_time = fromSeconds(params_.recent_s);
   std::uint64_t seen = 0;
   for (const CompactSweepPtr& sweep : waiting.sweeps) {
@@ -155,10 +160,7 @@ Outcome<DepthStage::Rendered> DepthStage::render(const Waiting& waiting, const I
   counters_.add("points in depth images", seen);
   const double line_gap_px = intrinsics.model.fx() * params_.line_gap_deg * M_PI / 180.0;
   if (params_.hide_occluded) buffer.removeInvisible({line_gap_px, params_.surface_step, kSurfaceStep_m});
-  Rendered rendered;
-  rendered.confidence = buffer.fill({intrinsics.model.fx(), params_.fill_gap_m, line_gap_px, kSurfaceSlope});
-  rendered.depth = buffer.image();
-  return rendered;
+  return buffer.takeFilled({intrinsics.model.fx(), params_.fill_gap_m, line_gap_px, kSurfaceSlope});
 }
 
 }  // namespace atlas

@@ -5,12 +5,14 @@
 
 #include <deque>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "atlas/base/stage.hpp"
 #include "atlas/calibration/rig.hpp"
 #include "atlas/camera/camera_window.hpp"
+#include "atlas/camera/depth_buffer.hpp"
 #include "atlas/camera/intrinsics_cache.hpp"
 #include "atlas/camera/pose_history.hpp"
 #include "atlas/sensor/products.hpp"
@@ -69,24 +71,22 @@ class DepthStage : public Stage {
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
     std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn, and those that came since
   };
-  struct Rendered {
-    cv::Mat depth, confidence;
-  };
   void take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index);
   void answerReady();
   void answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu);
   /// kNoPoints when no sweep of the window has a pose.
-  Outcome<Rendered> render(const Waiting& waiting, const Intrinsics& intrinsics,
-                           const Outcome<Pose>& T_map_imu);
+  Outcome<DepthBuffer::Images> render(const Waiting& waiting, const Intrinsics& intrinsics,
+                                      const Outcome<Pose>& T_map_imu);
 
   DepthParams params_;
   Rig rig_;
   Duration look_ahead_;
   PoseHistory poses_;
   CameraWindow window_;
-  std::vector<IntrinsicsCache> intrinsics_;  ///< per camera
-  std::vector<std::uint32_t> image_count_;   ///< per camera: index of its next image
-  std::deque<Waiting> waiting_;              ///< in merged order
+  std::vector<IntrinsicsCache> intrinsics_;            ///< per camera
+  std::vector<std::uint32_t> image_count_;             ///< per camera: index of its next image
+  std::vector<std::unique_ptr<DepthBuffer>> buffers_;  ///< per camera, from its first image on; empty between
+  std::deque<Waiting> waiting_;                        ///< in merged order
 };
 
 }  // namespace atlas

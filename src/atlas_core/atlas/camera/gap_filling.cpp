@@ -49,12 +49,13 @@ class Filler {
   float focal_gap_, largest_gap_px_, step_;
 };
 
-void fillRows(cv::Mat& depth, cv::Mat& confidence, const Filler& filler) {
+/// Returns the pixels that hold a depth now.
+PixelSet fillRows(cv::Mat& depth, cv::Mat& confidence, const PixelSet& measured, const Filler& filler) {
+  PixelSet filled = measured;
   for (int row = 0; row < depth.rows; ++row) {
     float *z = depth.ptr<float>(row), *sure = confidence.ptr<float>(row);
     End last;
-    for (int column = 0; column < depth.cols; ++column) {
-      if (z[column] == kNoDepth) continue;
+    measured.forEachInRow(row, [&](int column) {
       const End here{column, z[column], 1.0F};
       sure[column] = 1.0F;
       const int gap = here.at - last.at;
@@ -62,19 +63,20 @@ void fillRows(cv::Mat& depth, cv::Mat& confidence, const Filler& filler) {
         filler.between(last, here, [&](int at, float value, float how_sure) {
           z[at] = value;
           sure[at] = how_sure;
+          filled.add(row, at);
         });
       }
       last = here;
-    }
+    });
   }
+  return filled;
 }
 
-void fillColumns(cv::Mat& depth, cv::Mat& confidence, const Filler& filler) {
+void fillColumns(cv::Mat& depth, cv::Mat& confidence, const PixelSet& filled, const Filler& filler) {
   std::vector<End> last(static_cast<std::size_t>(depth.cols));
   for (int row = 0; row < depth.rows; ++row) {
     const float *z = depth.ptr<float>(row), *sure = confidence.ptr<float>(row);
-    for (int column = 0; column < depth.cols; ++column) {
-      if (z[column] == kNoDepth) continue;
+    filled.forEachInRow(row, [&](int column) {
       End& above = last[static_cast<std::size_t>(column)];
       const End here{row, z[column], sure[column]};
       const int gap = row - above.at;
@@ -85,18 +87,15 @@ void fillColumns(cv::Mat& depth, cv::Mat& confidence, const Filler& filler) {
         });
       }
       above = here;
-    }
+    });
   }
 }
 
 }  // namespace
 
-cv::Mat fillGaps(cv::Mat& depth, const GapFillingParams& params) {
-  cv::Mat confidence(depth.size(), CV_32FC1, cv::Scalar(0));
+void fillGaps(cv::Mat& depth, cv::Mat& confidence, const PixelSet& measured, const GapFillingParams& params) {
   const Filler filler(params);
-  fillRows(depth, confidence, filler);
-  fillColumns(depth, confidence, filler);
-  return confidence;
+  fillColumns(depth, confidence, fillRows(depth, confidence, measured, filler), filler);
 }
 
 }  // namespace atlas

@@ -7,6 +7,8 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "atlas/camera/pixel_set.hpp"
+
 namespace atlas {
 
 struct GapFillingParams {
@@ -16,9 +18,10 @@ struct GapFillingParams {
   double relative_step = 0.12;   ///< two ends whose depths differ by more are not of one surface
 };
 
-/// `depth`: CV_32FC1, kNoDepth where nothing is. Filled in place. Returns the confidence, CV_32FC1: 1 where a
-/// point was measured, 0 where nothing is, else falling with the distance to the measured points from 1 to
-/// 1/2 in the middle of the largest gap, along rows and again along columns.
-cv::Mat fillGaps(cv::Mat& depth, const GapFillingParams& params);
+/// `depth`: CV_32FC1, filled in place; `measured` are its pixels that hold a depth, the others are not read.
+/// `confidence`: CV_32FC1, all 0 before; becomes 1 where a point was measured, where a gap was filled
+/// between, falling with the distance to the measured points from 1 to 1/2 in the middle of the largest gap,
+/// along rows and again along columns.
+void fillGaps(cv::Mat& depth, cv::Mat& confidence, const PixelSet& measured, const GapFillingParams& params);
 
 }  // namespace atlas

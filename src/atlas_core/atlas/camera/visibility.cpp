@@ -9,22 +9,47 @@
 namespace atlas {
 namespace {
 
-constexpr int kCell_px = 2;          // of the coarse image: about the distance of two points on a line
-constexpr double kAlongLine = 0.35;  // of line_gap_px: points of a line are closer to each other than lines
+constexpr int kSmallestCell_px = 2;   // of the coarse image: about the distance of two points on a line
+constexpr double kCellsPerGap = 7.0;  // the distance of two points on a line is a small part of that of lines
+constexpr double kAlongLine = 0.35;   // of line_gap_px: points of a line are closer to each other than lines
+
+/// The coarse image: cells of some pixels.
+class Cells {
+ public:
+  Cells(const cv::Mat& depth, const VisibilityParams& params)
+      : px_(std::max(kSmallestCell_px, static_cast<int>(std::lround(params.line_gap_px / kCellsPerGap)))),
+        size_((depth.cols + px_ - 1) / px_, (depth.rows + px_ - 1) / px_),
+        along_(count(kAlongLine * params.line_gap_px)),
+        across_(count(params.line_gap_px)) {
+    for (int column = 0; column < depth.cols; ++column) of_column_.push_back(column / px_);
+  }
+  [[nodiscard]] cv::Size size() const { return size_; }
+  [[nodiscard]] int row(int row_px) const { return row_px / px_; }
+  [[nodiscard]] int column(int column_px) const { return of_column_[static_cast<std::size_t>(column_px)]; }
+  [[nodiscard]] int along() const { return along_; }    ///< cells between two points of a line, at most
+  [[nodiscard]] int across() const { return across_; }  ///< cells between two lines, at most
+
+ private:
+  [[nodiscard]] int count(double px) const { return std::max(1, static_cast<int>(std::lround(px / px_))); }
+
+  int px_;
+  cv::Size size_;
+  int along_, across_;
+  std::vector<int> of_column_;
+};
 
 /// Smallest (sign +1) depth of every cell, or largest (-1, all depths negated); kNoDepth where nothing is.
-cv::Mat coarse(const cv::Mat& depth, float sign) {
-  cv::Mat cells((depth.rows + kCell_px - 1) / kCell_px, (depth.cols + kCell_px - 1) / kCell_px, CV_32FC1,
-                cv::Scalar(kNoDepth));
-  for (int row = 0; row < depth.rows; ++row) {
-    const float* from = depth.ptr<float>(row);
-    float* to = cells.ptr<float>(row / kCell_px);
-    for (int column = 0; column < depth.cols; ++column) {
-      float& cell = to[column / kCell_px];
-      if (from[column] != kNoDepth) cell = std::min(cell, sign * from[column]);
-    }
+cv::Mat coarse(const SparseDepth& image, const Cells& cells, float sign) {
+  cv::Mat result(cells.size(), CV_32FC1, cv::Scalar(kNoDepth));
+  for (int row = 0; row < image.depth.rows; ++row) {
+    const float* from = image.depth.ptr<float>(row);
+    float* to = result.ptr<float>(cells.row(row));
+    image.pixels.forEachInRow(row, [&](int column) {
+      float& cell = to[cells.column(column)];
+      cell = std::min(cell, sign * from[column]);
+    });
   }
-  return cells;
+  return result;
 }
 
 /// Smallest value among the `count` cells before (or after) each cell, along x or y, without the cell itself.
@@ -48,17 +73,16 @@ cv::Mat frontOf(const cv::Mat& cells, int along, int across) {
   return front;
 }
 
-int cellsOf(double px) { return std::max(1, static_cast<int>(std::lround(px / kCell_px))); }
-
 /// Forgets the pixels that `gone(depth, row, column of the cell)` says are not seen.
 template <class Gone>
-void forget(cv::Mat& depth, const Gone& gone) {
-  for (int row = 0; row < depth.rows; ++row) {
-    float* pixels = depth.ptr<float>(row);
-    for (int column = 0; column < depth.cols; ++column) {
-      if (pixels[column] != kNoDepth && gone(pixels[column], row / kCell_px, column / kCell_px))
-        pixels[column] = kNoDepth;
-    }
+void forget(SparseDepth& image, const Cells& cells, const Gone& gone) {
+  for (int row = 0; row < image.depth.rows; ++row) {
+    float* depth = image.depth.ptr<float>(row);
+    image.pixels.forEachInRow(row, [&](int column) {
+      if (!gone(depth[column], cells.row(row), cells.column(column))) return;
+      depth[column] = kNoDepth;
+      image.pixels.remove(row, column);
+    });
   }
 }
 
@@ -81,36 +105,36 @@ void joinNearestLine(const cv::Mat& cells, int reach, bool downwards, cv::Mat& j
 }
 
 /// Smallest depth (sign +1) on the nearest lines above and below each cell, or largest (-1, negated).
-cv::Mat onNearestLines(const cv::Mat& depth, int along, int across, float sign) {
+cv::Mat onNearestLines(const SparseDepth& image, const Cells& cells, float sign) {
   cv::Mat band, joined;
-  cv::erode(coarse(depth, sign), band, cv::Mat::ones(1, 2 * along + 1, CV_8UC1));
+  cv::erode(coarse(image, cells, sign), band, cv::Mat::ones(1, 2 * cells.along() + 1, CV_8UC1));
   joined = cv::Mat(band.size(), CV_32FC1, cv::Scalar(kNoDepth));
-  joinNearestLine(band, across, true, joined);
-  joinNearestLine(band, across, false, joined);
+  joinNearestLine(band, cells.across(), true, joined);
+  joinNearestLine(band, cells.across(), false, joined);
   return joined;
 }
 
 }  // namespace
 
-void removeHidden(cv::Mat& depth, const VisibilityParams& params) {
-  const cv::Mat cells = coarse(depth, 1.0F);
-  if (cells.cols < 2 || cells.rows < 2) return;
-  const cv::Mat front = frontOf(cells, cellsOf(kAlongLine * params.line_gap_px), cellsOf(params.line_gap_px));
+void removeHidden(SparseDepth& image, const VisibilityParams& params) {
+  const Cells cells(image.depth, params);
+  if (cells.size().width < 2 || cells.size().height < 2) return;
+  const cv::Mat front = frontOf(coarse(image, cells, 1.0F), cells.along(), cells.across());
   const auto scale = static_cast<float>(1.0 + params.relative_step);
   const auto step_m = static_cast<float>(params.absolute_step_m);
-  forget(depth, [&](float z, int row, int column) {
+  forget(image, cells, [&](float z, int row, int column) {
     const float nearer = front.ptr<float>(row)[column];
     return nearer != kNoDepth && z > nearer * scale + step_m;
   });
 }
 
-void removeOutdated(cv::Mat& older, const cv::Mat& recent, const VisibilityParams& params) {
-  const int along = cellsOf(kAlongLine * params.line_gap_px), across = cellsOf(params.line_gap_px);
-  const cv::Mat nearest = onNearestLines(recent, along, across, 1.0F);
-  const cv::Mat farthest = onNearestLines(recent, along, across, -1.0F);
+void removeOutdated(SparseDepth& older, const SparseDepth& recent, const VisibilityParams& params) {
+  const Cells cells(recent.depth, params);
+  const cv::Mat nearest = onNearestLines(recent, cells, 1.0F);
+  const cv::Mat farthest = onNearestLines(recent, cells, -1.0F);
   const auto scale = static_cast<float>(1.0 + params.relative_step);
   const auto step_m = static_cast<float>(params.absolute_step_m);
-  forget(older, [&](float z, int row, int column) {
+  forget(older, cells, [&](float z, int row, int column) {
     const float low = nearest.ptr<float>(row)[column], high = -farthest.ptr<float>(row)[column];
     return low != kNoDepth && (z * scale + step_m < low || z > high * scale + step_m);
   });

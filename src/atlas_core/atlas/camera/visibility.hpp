@@ -10,6 +10,8 @@
 #include <limits>
 #include <opencv2/core/mat.hpp>
 
+#include "atlas/camera/pixel_set.hpp"
+
 namespace atlas {
 
 /// Depth of a pixel that no point falls on. Also what cv::erode takes for pixels outside the image; infinity
@@ -22,13 +24,19 @@ struct VisibilityParams {
   double absolute_step_m = 0.2;  ///< ... plus this is another one
 };
 
-// All images are CV_32FC1 of z-depths with kNoDepth where nothing is.
+/// An image of z-depths of which few pixels are known.
+struct SparseDepth {
+  SparseDepth(int width, int height)
+      : depth(height, width, CV_32FC1, cv::Scalar(kNoDepth)), pixels(width, height) {}
+  cv::Mat depth;    ///< CV_32FC1, m; kNoDepth where nothing is
+  PixelSet pixels;  ///< those with a depth
+};
 
 /// Removes what is hidden behind nearer points of the same image.
-void removeHidden(cv::Mat& depth, const VisibilityParams& params);
+void removeHidden(SparseDepth& image, const VisibilityParams& params);
 
 /// Removes from `older` what `recent` contradicts: next to it there are recent points above or below, and
 /// its depth is not among theirs, so it has moved away or something has moved in front of it.
-void removeOutdated(cv::Mat& older, const cv::Mat& recent, const VisibilityParams& params);
+void removeOutdated(SparseDepth& older, const SparseDepth& recent, const VisibilityParams& params);
 
 }  // namespace atlas
