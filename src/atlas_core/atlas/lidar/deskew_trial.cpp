@@ -123,10 +123,10 @@ Outcome<SkewLeft> skewLeftOf(const std::vector<SweepPtr>& sweeps, DeskewWay way,
   std::vector<Skew> skews;
   skews.reserve(points->size());
   for (const SweepPtr& sweep : sweeps) {
-    const auto time_s = static_cast<float>(toSeconds(sweep->stamp - sweeps.front()->stamp));
-    for (std::size_t i = 0; i < sweep->points.size(); ++i) {
+    const auto sweep_s = static_cast<float>(toSeconds(sweep->stamp - sweeps.front()->stamp));
+    for (const LidarPoint& p : sweep->points) {
       const LidarPoint &a = (*right)[skews.size()], &b = (*skewed)[skews.size()];
-      skews.push_back({{b.x - a.x, b.y - a.y, b.z - a.z}, time_s});
+      skews.push_back({{b.x - a.x, b.y - a.y, b.z - a.z}, sweep_s + p.time});
     }
   }
   return skewLeft(*points, skews, params);

@@ -15,6 +15,9 @@ namespace {
 constexpr double kPlaneWidth = 0.2, kPlaneThinness = 0.4;
 /// Shifts along the normal that differ by less (RMS) than the range noise of a lidar say nothing.
 constexpr double kMinShift_m = 0.02;
+/// Along the normal. What skew alone looks like is slower: at most a quarter of a sweep's motion, between
+/// seeing a surface ahead and seeing it from the side.
+constexpr double kMoving_mps = 0.5;
 
 struct Neighbour {
   Eigen::Vector3d offset;
@@ -22,24 +25,24 @@ struct Neighbour {
   double time_s;
 };
 
-/// Normal equations of the common unknowns (share, drift): distance = share * shift + time * drift, along the
-/// normal of each plane.
+/// Normal equations of the unknowns: distance = share * shift + time * (drift along the normal + own speed).
+/// Share and drift are common to all neighbourhoods, the speed is only asked alone.
 struct Equations {
-  Eigen::Matrix4d left = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  Eigen::Matrix<double, 5, 5> left = Eigen::Matrix<double, 5, 5>::Zero();
+  Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
 };
 
 /// Of one neighbourhood, after the best plane was taken out of both sides (Frisch, Waugh 1933; Lovell 1963).
 Equations equationsOf(const std::vector<Neighbour>& neighbours, const Eigen::Matrix3d& axes) {
   const Eigen::Vector3d normal = axes.col(0);
   Eigen::Matrix3d in_plane = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 4> mixed = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::Matrix<double, 3, 5> mixed = Eigen::Matrix<double, 3, 5>::Zero();
   Eigen::Vector3d plane_right = Eigen::Vector3d::Zero();
   Equations sums;
   for (const Neighbour& n : neighbours) {
     const Eigen::Vector3d plane(1.0, axes.col(1).dot(n.offset), axes.col(2).dot(n.offset));
-    Eigen::Vector4d row;
-    row << normal.dot(n.shift), n.time_s * normal;
+    Eigen::Matrix<double, 5, 1> row;
+    row << normal.dot(n.shift), n.time_s * normal, n.time_s;
     const double distance_m = normal.dot(n.offset);
     in_plane += plane * plane.transpose();
     mixed += plane * row.transpose();
@@ -47,10 +50,15 @@ Equations equationsOf(const std::vector<Neighbour>& neighbours, const Eigen::Mat
     sums.left += row * row.transpose();
     sums.right += row * distance_m;
   }
-  const Eigen::Matrix<double, 3, 4> explained = in_plane.ldlt().solve(mixed);
+  const Eigen::Matrix<double, 3, 5> explained = in_plane.ldlt().solve(mixed);
   sums.left -= mixed.transpose() * explained;
   sums.right -= explained.transpose() * plane_right;
   return sums;
+}
+
+/// Whether the surface itself moves: traffic that drives along is sharp without de-skew, not with it.
+bool moves(const Equations& equations) {
+  return std::abs(equations.right[4]) > kMoving_mps * equations.left(4, 4);
 }
 
 /// Axes of the neighbourhood in order of its extent along them; false when it is no plane.
@@ -88,12 +96,13 @@ SkewLeft skewLeft(const std::vector<LidarPoint>& points, const std::vector<Skew>
     if (neighbours.size() < params.min_neighbours || !planeAxes(neighbours, axes)) continue;
     const Equations equations = equationsOf(neighbours, axes);
     const auto count = static_cast<double>(neighbours.size());
-    if (!(equations.left(0, 0) > kMinShift_m * kMinShift_m * count)) continue;
+    if (!(equations.left(0, 0) > kMinShift_m * kMinShift_m * count) || moves(equations)) continue;
     all.left += equations.left;
     all.right += equations.right;
     ++result.neighbourhoods;
   }
-  if (result.neighbourhoods > 0) result.share = all.left.ldlt().solve(all.right)[0];
+  if (result.neighbourhoods > 0)
+    result.share = all.left.topLeftCorner<4, 4>().ldlt().solve(all.right.head<4>())[0];
   return result;
 }
 

@@ -18,7 +18,7 @@ namespace atlas {
 /// What is known of a point beside its place in map.
 struct Skew {
   Eigen::Vector3f shift_m = Eigen::Vector3f::Zero();  ///< by which leaving out the de-skew moves it, in map
-  float time_s = 0;                                   ///< of its sweep, since the first of the window
+  float time_s = 0;                                   ///< of the point, since any moment of the window
 };
 
 struct SkewLeft {
