@@ -16,6 +16,7 @@
 #include "atlas/pipeline.hpp"
 #include "atlas_ros/stage_params.hpp"
 #include "atlas_ros/yaml_reader.hpp"
+#include "feed.hpp"
 #include "files/writer_stages.hpp"
 #include "progress_bar.hpp"
 #include "smooth_run.hpp"
@@ -81,6 +82,7 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   graph.beginThread();  // beside reading and unpacking
   graph.add([&](atlas::LocalGraph::Bus& bus) { return bindVideoDecoder(bus, decoder); });
   atlas::PipelineParams params;
+  params.monitor = configuration.section<atlas::MonitorParams>("sensor_monitor");
   params.localization = configuration.section<atlas::LocalizationParams>("localization");
   if (options.smooth)
     params.localization.smoothed = smoothRun(options.input, params.localization, options.out);
@@ -100,21 +102,13 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   writers.overlay = configuration.section<atlas::OverlayWriterParams>("overlay_writer");
   configuration.section<atlas::TrajectoryWriterParams>("trajectory_writer");
   configuration.section<atlas::ObstacleWriterParams>("obstacle_writer");
+  configuration.section<atlas::StatusWriterParams>("status_writer");
   configuration.rejectUnread();
   for (const std::string& extra : options.write) {
     if (extra != "deskewed") throw std::invalid_argument("--write knows deskewed, got '" + extra + "'");
     writers.write_deskewed = true;
   }
   atlas::addWriters(graph, writers, options.out);
-}
-
-/// Hands an event to the graph with the type that its stages expect.
-void feed(atlas::LocalGraph& graph, const atlas::StreamInfo& stream, const atlas::Event& event) {
-  if (stream.kind == atlas::StreamKind::kCompressedImage) {
-    graph.publish(stream.topic, atlas::EncodedImage{std::get<atlas::ImagePtr>(event.payload)});
-    return;
-  }
-  std::visit([&](const auto& value) { graph.publish(stream.topic, value); }, event.payload);
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ ATLAS_WRITER_NODELET(DepthWriter, atlas::bindDepthWriter(link, params, out));
 ATLAS_WRITER_NODELET(FrustumWriter, atlas::bindFrustumWriter(link, params, out));
 ATLAS_WRITER_NODELET(ThermalWriter, atlas::bindThermalWriter(link, params, out));
 ATLAS_WRITER_NODELET(ObstacleWriter, atlas::bindObstacleWriter(link, out));
+ATLAS_WRITER_NODELET(StatusWriter, atlas::bindStatusWriter(link, out));
 ATLAS_WRITER_NODELET(OverlayWriter, atlas::bindOverlayWriter(link, params, out));
 #undef ATLAS_WRITER_NODELET
 
@@ -68,4 +69,5 @@ PLUGINLIB_EXPORT_CLASS(atlas_writers::DepthWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::FrustumWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ThermalWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ObstacleWriterNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(atlas_writers::StatusWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::OverlayWriterNodelet, nodelet::Nodelet)

@@ -16,6 +16,7 @@
 #include "files/map_writer.hpp"
 #include "files/obstacle_writer.hpp"
 #include "files/overlay_writer.hpp"
+#include "files/status_writer.hpp"
 #include "files/thermal_writer.hpp"
 #include "files/trajectory_writer.hpp"
 
@@ -193,6 +194,13 @@ template <class Bus>
 StageFactory bindObstacleWriter(Bus& bus, const std::string& out) {
   using S = ObstacleWriterStage;
   bus.template input<S, Obstacles>(0, "obstacles", [](S& s, const Obstacles& o) { s.push(o); });
+  return [=] { return std::make_unique<S>(out); };
+}
+template <class Bus>
+StageFactory bindStatusWriter(Bus& bus, const std::string& out) {
+  using S = StatusWriterStage;
+  bus.template input<S, SensorStatus>(0, "sensor_status",
+                                      [](S& s, const SensorStatus& status) { s.push(status); });
   return [=] { return std::make_unique<S>(out); };
 }
 template <class Bus>

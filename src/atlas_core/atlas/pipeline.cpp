@@ -4,6 +4,7 @@
 namespace atlas {
 
 void addPipeline(LocalGraph& graph, const PipelineParams& params) {
+  graph.add([&](LocalGraph::Bus& bus) { return bindMonitor(bus, params.monitor); });
   graph.add([&](LocalGraph::Bus& bus) { return bindLocalization(bus, params.localization); });
   graph.add([&](LocalGraph::Bus& bus) { return bindDeskew(bus, params.deskew); });
   graph.add([&](LocalGraph::Bus& bus) { return bindAggregate(bus, params.aggregate); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The whole data path in order: the first file to read.
 //
+//   all raw data                         -> monitor      -> sensor_status
 //   imu/data, gnss/fix, gnss/heading,
 //   imu/gnss/fix (second receiver),
 //   imu/pressure (if asked for)          -> localization -> odometry
@@ -30,10 +31,12 @@
 #include "atlas/lidar/deskew_stage.hpp"
 #include "atlas/lidar/obstacle_stage.hpp"
 #include "atlas/localization/localization_stage.hpp"
+#include "atlas/monitor/monitor_stage.hpp"
 
 namespace atlas {
 
 struct PipelineParams {
+  MonitorParams monitor;
   LocalizationParams localization;
   DeskewParams deskew;
   AggregateParams aggregate;
@@ -71,6 +74,45 @@ void rigAndOdometry(Bus& bus) {
   bus.template input<StageType, StaticTransforms>(
       0, "tf_static", [](StageType& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
   bus.template input<StageType, Odometry>(1, "odometry", [](StageType& s, const Odometry& o) { s.push(o); });
+}
+
+template <class Bus>
+StageFactory bindMonitor(Bus& bus, const MonitorParams& params) {
+  using S = MonitorStage;
+  validate(params);
+  const MonitorStage::Inputs first(params);
+  bus.template input<S, StaticTransforms>(
+      S::kTfStatic, "tf_static", [](S& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
+  bus.template input<S, ImuSample>(S::kImu, "imu/data", [](S& s, const ImuSample& imu) { s.push(imu); });
+  bus.template input<S, MagneticSample>(S::kMagnetic, "imu/mag",
+                                        [](S& s, const MagneticSample& field) { s.push(field); });
+  bus.template input<S, ScalarSample>(S::kPressure, "imu/pressure",
+                                      [](S& s, const ScalarSample& pressure) { s.push(pressure); });
+  bus.template input<S, GnssFix>(S::kFix, "gnss/fix", [](S& s, const GnssFix& fix) { s.push(fix); });
+  bus.template input<S, GnssHeading>(S::kHeading, "gnss/heading",
+                                     [](S& s, const GnssHeading& h) { s.push(h); });
+  bus.template input<S, GnssFix>(S::kSecondFix, "imu/gnss/fix",
+                                 [](S& s, const GnssFix& fix) { s.pushSecond(fix); });
+  std::vector<std::pair<std::size_t, std::string>> clocks = {{S::kImuTime, "imu/time"},
+                                                             {S::kFixTime, "gnss/time"}};
+  for (std::size_t i = 0; i < params.lidars.size(); ++i)
+    clocks.emplace_back(first.times + i, params.lidars[i] + "/time");
+  for (const auto& [index, topic] : clocks) {
+    bus.template input<S, TimeReference>(index, topic, [index = index](S& s, const TimeReference& reference) {
+      s.pushTime(index, reference);
+    });
+  }
+  inputs<S, SweepPtr>(bus, first.points, params.lidars, "/points");
+  inputs<S, CameraInfo>(bus, first.infos, params.cameras, "/camera_info");
+  inputs<S, ImagePtr>(bus, first.images, params.cameras, "/image");
+  inputs<S, TemperatureRange>(bus, first.ranges, params.thermal_cameras, "/temperature_range");
+  inputs<S, RadarScan>(bus, first.scans, params.radars, "/scan");
+  const auto status = bus.template output<SensorStatus>("sensor_status");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_status = status;
+    return stage;
+  };
 }
 
 template <class Bus>

@@ -10,6 +10,7 @@
 #include <atlas_msgs/PointBatches.h>
 #include <atlas_msgs/ProjectedDetections.h>
 #include <atlas_msgs/RadarScan.h>
+#include <atlas_msgs/SensorStatus.h>
 #include <atlas_msgs/TemperatureRange.h>
 #include <atlas_msgs/VideoPacket.h>
 #include <geometry_msgs/Vector3.h>
@@ -86,6 +87,8 @@ atlas_msgs::FrustumArray toMsg(const atlas::Frustums& frustums);
 atlas::Frustums fromMsg(const atlas_msgs::FrustumArray& msg);
 atlas_msgs::ProjectedDetections toMsg(const atlas::ProjectedDetections& projected);
 atlas::ProjectedDetections fromMsg(const atlas_msgs::ProjectedDetections& msg);
+atlas_msgs::SensorStatus toMsg(const atlas::SensorStatus& status);
+atlas::SensorStatus fromMsg(const atlas_msgs::SensorStatus& msg);
 sensor_msgs::Image toMsg(const atlas::DepthImage& depth);  // 32FC1, REP-118
 
 geometry_msgs::Pose toMsg(const atlas::Pose& pose);

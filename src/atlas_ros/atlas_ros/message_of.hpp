@@ -22,14 +22,18 @@ struct MessageOf;
   }
 
 ATLAS_MESSAGE_OF(atlas::ImuSample, sensor_msgs::Imu);
+ATLAS_MESSAGE_OF(atlas::MagneticSample, sensor_msgs::MagneticField);
+ATLAS_MESSAGE_OF(atlas::TimeReference, sensor_msgs::TimeReference);
 ATLAS_MESSAGE_OF(atlas::GnssFix, sensor_msgs::NavSatFix);
 ATLAS_MESSAGE_OF(atlas::CameraInfo, sensor_msgs::CameraInfo);
 ATLAS_MESSAGE_OF(atlas::Detections, atlas_msgs::Detection2dArray);
 ATLAS_MESSAGE_OF(atlas::TemperatureRange, atlas_msgs::TemperatureRange);
+ATLAS_MESSAGE_OF(atlas::RadarScan, atlas_msgs::RadarScan);
 ATLAS_MESSAGE_OF(atlas::Odometry, nav_msgs::Odometry);
 ATLAS_MESSAGE_OF(atlas::Obstacles, atlas_msgs::ObstacleArray);
 ATLAS_MESSAGE_OF(atlas::Frustums, atlas_msgs::FrustumArray);
 ATLAS_MESSAGE_OF(atlas::ProjectedDetections, atlas_msgs::ProjectedDetections);
+ATLAS_MESSAGE_OF(atlas::SensorStatus, atlas_msgs::SensorStatus);
 #undef ATLAS_MESSAGE_OF
 
 template <>

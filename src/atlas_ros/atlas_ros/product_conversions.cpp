@@ -53,6 +53,30 @@ atlas::Outcome<atlas::Odometry> fromMsg(const nav_msgs::Odometry& msg) {
   return odometry;
 }
 
+atlas_msgs::SensorStatus toMsg(const atlas::SensorStatus& status) {
+  atlas_msgs::SensorStatus msg;
+  msg.header.stamp = toTime(status.stamp);
+  msg.sensor = status.sensor;
+  msg.score = status.score;
+  for (const atlas::SensorAnomaly& a : status.anomalies) {
+    atlas_msgs::SensorAnomaly anomaly;
+    anomaly.name = a.name;
+    anomaly.value = a.value;
+    anomaly.threshold = a.threshold;
+    anomaly.unit = a.unit;
+    anomaly.since = toTime(a.since);
+    msg.anomalies.push_back(anomaly);
+  }
+  return msg;
+}
+
+atlas::SensorStatus fromMsg(const atlas_msgs::SensorStatus& msg) {
+  atlas::SensorStatus status{fromTime(msg.header.stamp), msg.sensor, msg.score, {}};
+  for (const atlas_msgs::SensorAnomaly& a : msg.anomalies)
+    status.anomalies.push_back({a.name, a.value, a.threshold, a.unit, fromTime(a.since)});
+  return status;
+}
+
 sensor_msgs::NavSatFix toMsg(const atlas::Anchor& anchor) {
   sensor_msgs::NavSatFix msg;
   msg.header.stamp = toTime(anchor.stamp);

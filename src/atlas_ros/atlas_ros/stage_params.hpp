@@ -8,6 +8,21 @@
 namespace atlas_ros {
 
 template <class Reader>
+void readParams(Reader& reader, atlas::MonitorParams& p) {
+  reader.read("lidars", p.lidars);
+  reader.read("cameras", p.cameras);
+  reader.readOptional("thermal_cameras", p.thermal_cameras);
+  reader.readOptional("radars", p.radars);
+  reader.read("required", p.required);
+  reader.readOptional("dead_rings", p.dead_rings);
+  reader.readOptional("status_period_s", p.status_period_s);
+  for (std::size_t i = 0; i < atlas::kAnomalies; ++i) {
+    const auto anomaly = static_cast<atlas::Anomaly>(i);
+    reader.readOptional(atlas::infoOf(anomaly).parameter, p.thresholds[anomaly]);
+  }
+}
+
+template <class Reader>
 void readParams(Reader& reader, atlas::LocalizationParams& p) {
   reader.read("filter", p.filter);
   reader.read("gnss_antenna_frame", p.gnss_antenna_frame);

@@ -55,7 +55,7 @@ constexpr std::array<AnomalyInfo, kAnomalies> kTable = {{
     {kGnss, "frozen", "fix_frozen_s", "s", kAbove, 3.0, 0.5,
      "time with the same position to the last digit; some receivers hold it while they stand"},
     {kGnss, "position_jump", "position_jump_m", "m", kAbove, 2.0, 0.8,
-     "distance from the motion before, beyond three standard deviations and 6 m/s^2"},
+     "distance from the motion before, beyond what noise (as the receiver states it) and 6 m/s^2 explain"},
     {kGnss, "position_sigma", "position_sigma_m", "m", kAbove, 5.0, 0.6,
      "horizontal standard deviation that the receiver gives"},
     {kGnss, "heading_lost", "heading_lost_s", "s", kAbove, 1.0, 0.2,

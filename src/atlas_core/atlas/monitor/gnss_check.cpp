@@ -11,7 +11,7 @@ namespace {
 constexpr Duration kMotionSpan = kSecond, kLongestStep = 2 * kSecond;
 constexpr double kMostAcceleration_mps2 = 6.0;  // hard braking
 constexpr double kMostTurn_radps = 1.5;
-constexpr double kSigmas = 3.0;
+constexpr double kSigmas = 4.0 * M_SQRT2;  // four of a difference of two fixes
 
 double horizontalSigma(const GnssFix& fix) {
   if (!fix.covariance_enu_m2) return 0.0;
@@ -39,6 +39,7 @@ void GnssCheck::add(const GnssFix& fix, Findings& findings) {
 /// Against the motion over the last second: constant velocity, and what braking and noise may do to it.
 void GnssCheck::measureJump(const GnssFix& fix, Findings& findings) {
   const Eigen::Vector3d p_map = map_->toMap(fix.position);
+  if (!places_.empty() && places_.back().p_map == p_map) return;  // the receiver is slower than its stream
   if (!places_.empty() && fix.stamp - places_.back().stamp > kLongestStep) places_.clear();
   if (!places_.empty()) {
     const Place &first = places_.front(), &last = places_.back();

@@ -14,6 +14,8 @@ namespace atlas {
 class ImuCheck {
  public:
   explicit ImuCheck(const AnomalyThresholds& thresholds);
+  ImuCheck(const ImuCheck&) = delete;  // the guard refers to the counters beside it
+  ImuCheck& operator=(const ImuCheck&) = delete;
   /// `standing`: somebody else sees that the vehicle stands.
   void add(const ImuSample& sample, bool standing, Findings& findings);
 
