@@ -11,6 +11,7 @@ void addPipeline(LocalGraph& graph, const PipelineParams& params) {
   graph.add([&](LocalGraph::Bus& bus) { return bindObstacles(bus, params.obstacles); });
   graph.add([&](LocalGraph::Bus& bus) { return bindCameraLidar(bus, params.camera_lidar); });
   graph.add([&](LocalGraph::Bus& bus) { return bindThermal(bus, params.thermal); });
+  graph.beginThread();  // depth images cost as much as all before them
   graph.add([&](LocalGraph::Bus& bus) { return bindDepth(bus, params.depth); });
 }
 
