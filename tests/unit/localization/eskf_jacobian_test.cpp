@@ -26,6 +26,7 @@ State someState(unsigned seed) {
   s.gyro_bias = vector(0.01);
   s.accel_bias = vector(0.1);
   s.heading_slow_rad = 0.02;
+  s.mounted_rad = 0.6;
   s.mount_yaw = 0.05;
   s.mount_pitch = -0.04;
   s.axle_m = 1.2;

@@ -80,16 +80,17 @@ void EskfFilter::useStanding(const ImuMonitor::Block& block) {
 }
 
 void EskfFilter::useWheels() {
-  const Eigen::Vector3d u = state_.R.conjugate() * state_.v;
+  const Eigen::AngleAxisd R_vehicle_imu(-state_.mounted_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d u = R_vehicle_imu * (state_.R.conjugate() * state_.v);
   if (std::abs(u.x()) < kMinWheelsSpeed_mps) return;
   const EskfParams& e = params_.eskf;
-  const Eigen::Vector3d w = rate();
-  const double braking = current_->linear_acceleration_mps2.x() - state_.accel_bias.x();
+  const Eigen::Vector3d w = R_vehicle_imu * rate();
+  const double braking = (R_vehicle_imu * (current_->linear_acceleration_mps2 - state_.accel_bias)).x();
   const double common = std::pow(e.slip_sigma_mps, 2) + std::pow(e.slip_sigma_rad * u.x(), 2);
   const double slip = common + std::pow(e.axle_height_m * w.x(), 2);
   const double hop = 4.0 * common + std::pow(e.axle_height_m * w.y(), 2) +
                      std::pow(kSuspension_rad_per_mps2 * braking * u.x(), 2);
-  const auto z = eskf::wheelsMeasurement(state_, w, wheels_scale_ * slip, wheels_scale_ * hop);
+  const auto z = eskf::wheelsMeasurement(state_, rate(), wheels_scale_ * slip, wheels_scale_ * hop);
   const bool used = apply<2>("wheels", z, kConstraintGate);
   (used ? wheels_used_ : wheels_outlier_).add(counters_);
   // What is not a car (or slips more) shows while fixes say how it moves.

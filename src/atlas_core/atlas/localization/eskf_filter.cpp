@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How time passes and measurements enter; the vehicle's constraints are in eskf_constraints.cpp, what comes
-// out in eskf_odometry.cpp.
+// How time passes and measurements enter; the vehicle's constraints are in eskf_constraints.cpp, who is
+// believed when fixes and state disagree in eskf_recovery.cpp, what comes out in eskf_odometry.cpp.
 #include "atlas/localization/eskf_filter.hpp"
 
 #include <algorithm>
@@ -15,17 +15,8 @@ constexpr double kGapPeriods = 5.0;            // so many sample periods without
 constexpr double kGapLeast_s = 0.02;           // ... if it is this long
 constexpr double kGapAcceleration_mps2 = 1.5;  // what a vehicle may do in it
 constexpr double kGapRate_radps = 0.2;
-constexpr double kLongestGap_s = 30.0;       // after it nothing is known any more
-constexpr double kRecoveredSpeed_mps = 3.0;  // standard deviations added in a recovery
+constexpr double kLongestGap_s = 30.0;  // after it nothing is known any more
 constexpr double kRecoveredYaw_rad = 0.5;
-constexpr int kMostRecoveries = 2;
-constexpr double kMisfitMemory_s = 1.0, kMisfitGain_per_s = 0.5;  // doubt in fixes grows over seconds
-constexpr double kUsualMisfit = 1.5, kMostMisfit = 4.0;           // of mahalanobis_sq / 3, whose mean is 1
-constexpr double kMostFixScale = 1e4;
-constexpr double kHumbleFixes = 30.0;  // so many fixes show that they are better than they say
-constexpr double kHumbleMisfit = 0.3, kJustMisfit = 0.6;  // below: noise is smaller; above: it is not
-constexpr double kShrink_per_s = 1.0, kRegret = 6.0;      // doubt returns faster than trust
-constexpr double kLeastFixScale = 0.02;
 
 eskf::Inertial inertial(const ImuSample& s) { return {s.angular_velocity_radps, s.linear_acceleration_mps2}; }
 
@@ -138,7 +129,7 @@ bool EskfFilter::record(eskf::History* history) {
 void EskfFilter::restart(const ImuSample& first) {
   skipPendingBefore(first.stamp, &EskfFilter::fix_alone_, &EskfFilter::heading_alone_);
   start_ = eskf::Start(params_, lever_arm_imu_, earth_);
-  running_ = false;
+  running_ = yaw_checked_ = false;
   rejected_ = recoveries_ = still_blocks_ = 0;
   block_before_.reset();
   monitor_.clear();
@@ -171,6 +162,7 @@ void EskfFilter::stepTo(const ImuSample& sample, double gap_s) {
     current_ = sample;
     return;
   }
+  if (!yaw_checked_) start_.move(sample.stamp, inertial(*current_), inertial(sample), dt);
   const EskfParams& e = params_.eskf;
   const double accel =
       std::max(e.accelerometer_noise_mps2_sqrt_hz, e.vibration_share * monitor_.forceDensity());
@@ -193,10 +185,15 @@ void EskfFilter::stepTo(const ImuSample& sample, double gap_s) {
 void EskfFilter::tryStart() {
   const auto result = start_.result(inertial(*current_));
   if (!result) return;
-  state_ = result->state;
-  P_ = result->P;
+  begin(*result);
   running_ = true;
   (result->from_velocity ? started_velocity_ : started_gnss_).add(counters_);
+}
+
+void EskfFilter::begin(const eskf::Start::Result& result) {
+  state_ = result.state;
+  P_ = result.P;
+  if (state_.mounted_rad != 0.0) mounted_.add(counters_);
   last_used_fix_ = last_used_heading_ = current_->stamp;
   if (history_ != nullptr) history_->begin(current_->stamp, P_);
 }
@@ -207,6 +204,7 @@ void EskfFilter::use(Stamp stamp, const MeasurementQueue::Fix& fix) {
     fix_used_.add(counters_);
     return;
   }
+  if (!yaw_checked_) checkYaw(fix);
   const auto z = eskf::fixMeasurement(state_, rate(), fix.p_map_antenna, fix_scale_ * fix.R_m2);
   const bool accepted = apply<3>("fix", z, params_.gate_mahalanobis_sq);
   learnFixScale(stamp);
@@ -224,47 +222,6 @@ void EskfFilter::use(Stamp stamp, const MeasurementQueue::Fix& fix) {
   if (rejected_ >= params_.max_consecutive_rejections &&
       toSeconds(stamp - rejecting_since_) > params_.eskf.recovery_s)
     recoverPosition(stamp, z.y);
-}
-
-void EskfFilter::learnFixScale(Stamp stamp) {
-  // Fixes that fit worse than they say for a while are worse: multipath, a wrong lever arm, late stamps.
-  const double dt = std::min(toSeconds(stamp - last_scaled_fix_), 1.0);
-  last_scaled_fix_ = stamp;
-  fix_misfit_ +=
-      std::min(1.0, dt / kMisfitMemory_s) * (std::min(last_mahalanobis_sq_ / 3.0, kMostMisfit) - fix_misfit_);
-  double gain = kMisfitGain_per_s * (fix_misfit_ - kUsualMisfit);
-  if (fix_scale_ < 1.0 && gain > 0.0) gain *= kRegret;
-  // Fixes that agree with the motion far better than they say err slowly: white noise of their stated size
-  // would waste what they tell about velocity and tilt (innovation-based adaptation, Mehra 1972). The slow
-  // part stays in the covariance that is reported.
-  mean_misfit_ += (std::min(last_mahalanobis_sq_ / 3.0, kMostMisfit) - mean_misfit_) / kHumbleFixes;
-  double least = std::min(fix_scale_, 1.0), most = std::max(fix_scale_, 1.0);
-  if (gain > 0.0) most = kMostFixScale;
-  if (fix_scale_ <= 1.0 && mean_misfit_ < kHumbleMisfit) {
-    gain = -kShrink_per_s;
-    least = kLeastFixScale;
-  } else if (fix_scale_ < 1.0 && gain <= 0.0) {
-    gain = kShrink_per_s * std::max(0.0, mean_misfit_ - kJustMisfit);
-  } else if (fix_scale_ > 1.0) {
-    least = 1.0;
-  }
-  fix_scale_ = std::clamp(fix_scale_ * std::exp(gain * dt), least, most);
-}
-
-void EskfFilter::recoverPosition(Stamp stamp, const Eigen::Vector3d& innovation_m) {
-  rejected_ = 0;
-  last_used_fix_ = stamp;
-  if (++recoveries_ > kMostRecoveries) {
-    started_anew_.add(counters_);
-    const ImuSample now = *current_;
-    restart(now);
-    return;
-  }
-  recovered_.add(counters_);
-  for (int i = 0; i < 3; ++i) {
-    P_(eskf::kP + i, eskf::kP + i) += innovation_m.squaredNorm();
-    P_(eskf::kV + i, eskf::kV + i) += kRecoveredSpeed_mps * kRecoveredSpeed_mps;
-  }
 }
 
 void EskfFilter::use(Stamp stamp, const MeasurementQueue::Heading& heading) {

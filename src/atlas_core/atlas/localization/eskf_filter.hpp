@@ -51,6 +51,8 @@ class EskfFilter : public PositioningFilter {
   void use(Stamp stamp, const MeasurementQueue::Height& height);
   void skip(const Entry& entry, Tally EskfFilter::*fix_tally, Tally EskfFilter::*heading_tally);
   void tryStart();
+  void begin(const eskf::Start::Result& result);
+  void checkYaw(const MeasurementQueue::Fix& fix);
   void learnFixScale(Stamp stamp);
   void recoverPosition(Stamp stamp, const Eigen::Vector3d& innovation_m);
 
@@ -77,6 +79,7 @@ class EskfFilter : public PositioningFilter {
 
   std::optional<ImuSample> current_;  ///< the sample (or interpolated one) that the state belongs to
   bool running_ = false;
+  bool yaw_checked_ = false;  ///< against the accelerometers; until then start_ goes on
   eskf::State state_;
   eskf::Matrix P_ = eskf::Matrix::Zero();
   double period_s_ = 0.0;  ///< usual time between two samples
@@ -106,7 +109,9 @@ class EskfFilter : public PositioningFilter {
   Tally height_used_{"pressure used"}, height_outlier_{"skipped pressure: outlier"},
       height_alone_{"skipped pressure: no imu samples around it"};
   Tally started_gnss_{"heading initialized from gnss heading"},
-      started_velocity_{"heading initialized from velocity"};
+      started_velocity_{"heading initialized from velocity"},
+      turned_{"heading set anew: the accelerations come from another side"},
+      mounted_{"imu does not look forward, or the car began in reverse"};
   Tally recovered_{"position re-initialized after outliers"},
       heading_recovered_{"heading re-initialized after outliers"},
       started_anew_{"restarted: position rejected again and again"};

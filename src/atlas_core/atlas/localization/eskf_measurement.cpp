@@ -53,20 +53,22 @@ Measurement<2> upMeasurement(const State& state, const Eigen::Vector3d& up_imu, 
 
 Measurement<2> wheelsMeasurement(const State& state, const Eigen::Vector3d& rate_radps, double slip_variance,
                                  double hop_variance) {
-  const Eigen::Matrix3d R_imu_map = state.R.conjugate().toRotationMatrix();
-  const Eigen::Vector3d u = R_imu_map * state.v;
+  const Eigen::Matrix3d R_vehicle_imu =
+      Eigen::AngleAxisd(-state.mounted_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d R_vehicle_map = R_vehicle_imu * state.R.conjugate();
+  const Eigen::Vector3d u = R_vehicle_map * state.v, w = R_vehicle_imu * rate_radps;
   Eigen::Matrix<double, 2, 3> select;  // of u
   select << -state.mount_yaw, 1.0, 0.0, state.mount_pitch, 0.0, 1.0;
   Measurement<2> z;
-  z.y = -(select * u + state.axle_m * Eigen::Vector2d(-rate_radps.z(), rate_radps.y()));
-  z.H.block<2, 3>(0, kV) = select * R_imu_map;
-  z.H.block<2, 3>(0, kTheta) = select * R_imu_map * skew(state.v);
+  z.y = -(select * u + state.axle_m * Eigen::Vector2d(-w.z(), w.y()));
+  z.H.block<2, 3>(0, kV) = select * R_vehicle_map;
+  z.H.block<2, 3>(0, kTheta) = select * R_vehicle_map * skew(state.v);
   z.H(0, kGyro + 2) = state.axle_m;
-  z.H(1, kGyro + 1) = -state.axle_m;
+  z.H.block<1, 3>(1, kGyro) = -state.axle_m * R_vehicle_imu.row(1);
   z.H(0, kMountYaw) = -u.x();
   z.H(1, kMountPitch) = u.x();
-  z.H(0, kAxle) = -rate_radps.z();
-  z.H(1, kAxle) = rate_radps.y();
+  z.H(0, kAxle) = -w.z();
+  z.H(1, kAxle) = w.y();
   z.R = Eigen::Vector2d(slip_variance, hop_variance).asDiagonal();
   return z;
 }

@@ -6,8 +6,8 @@
 //   heading    h = yaw(R) + slow error;  with x = R e_x: dyaw = theta_z - x_z (x_x theta_x + x_y theta_y) /
 //              (x_x^2 + x_y^2)
 //   up         the direction of "up" u in the imu frame: R u - up(p) is -theta x up, two components
-//   no slip    with u = R'v: 0 = u_y - mount_yaw u_x - axle w_z     (the rear axle does not move sideways:
-//              bicycle model, Rajamani 2012, 2.2)
+//   no slip    with u = R'v and w turned by -mounted about z: 0 = u_y - mount_yaw u_x - axle w_z
+//              (the rear axle does not move sideways: bicycle model, Rajamani 2012, 2.2)
 //   no hop     0 = u_z + mount_pitch u_x + axle w_y
 //   height     h = p_z                         (of the imu, by air pressure)
 //   standing   0 = v

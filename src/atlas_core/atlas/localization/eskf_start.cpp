@@ -25,6 +25,9 @@ constexpr double kStoodBias_radps = 2e-4;
 constexpr double kMatchSpeed_mps = 0.5;  // standard deviation of a velocity to begin with
 constexpr double kMatchLeast_s = 0.8, kMatchMost_s = 2.5;
 constexpr double kMaxHeadingAge_s = 2.0;
+constexpr double kMountedForward_rad = 0.4;  // within it the filter's own mount angle does
+constexpr double kReversed_rad = 2.4;        // beyond it: mounted backwards, or the car reverses
+constexpr double kReversedAxle_m = 2.0;      // standard deviation of where the axle is, then
 }  // namespace
 
 Start::Start(const PositioningParams& params, const Eigen::Vector3d& lever_arm_imu, const Earth& earth)
@@ -46,6 +49,7 @@ void Start::move(Stamp stamp, const Inertial& first, const Inertial& second, dou
     if (!held) up_imu_ += dt_s / memory * (second.force_mps2 / earth_.gravity_mps2 - up_imu_);
   }
   unstill_s_ += dt_s;
+  mount_.move(back, second.force_mps2, dt_s);
   impulse_imu_ = back * impulse_imu_ + dt_s * second.force_mps2;
   matched_s_ += dt_s;
   if (heading_) {
@@ -114,6 +118,7 @@ void Start::fix(const Eigen::Vector3d& p_map_antenna, const Eigen::Matrix3d& R_m
   }
   located_ = true;
   matchVelocity();
+  mount_.velocity(velocity(), velocityVariance(), up_imu_.normalized());
 }
 
 void Start::heading(double yaw_rad, double variance) {
@@ -129,6 +134,17 @@ std::optional<Start::Yaw> Start::course() const {
   const double variance = (east * v.y() * v.y() + north * v.x() * v.x()) / std::pow(speed, 4);
   if (variance > kMaxCourse_rad * kMaxCourse_rad) return std::nullopt;
   return Yaw{std::atan2(v.y(), v.x()), variance};
+}
+
+double Start::mounted() const {
+  const double angle = mount_.angle().value_or(0.0);
+  return std::abs(angle) < kMountedForward_rad ? 0.0 : angle;
+}
+
+std::optional<double> Start::seenYaw() const {
+  const std::optional<Yaw> along = course();
+  if (!along || !mount_.angle()) return std::nullopt;
+  return wrapAngle(along->yaw_rad - mounted());
 }
 
 Start::Up Start::up(double yaw_rad) const {
@@ -164,6 +180,7 @@ std::optional<Start::Result> Start::result(const Inertial& now) const {
     const double bend = now.rate_radps.norm() * (lever_.norm() + std::abs(params_.imu_to_rear_axle_m));
     if (bend > kMaxLeverCourse_rad * v_antenna.norm()) return std::nullopt;
     yaw = course();
+    if (yaw) yaw->yaw_rad = wrapAngle(yaw->yaw_rad - mounted());
     if (yaw) yaw->variance += e.mount_sigma_rad * e.mount_sigma_rad + 0.25 * std::pow(kMaxLeverCourse_rad, 2);
   }
   if (!yaw) return std::nullopt;
@@ -178,6 +195,7 @@ std::optional<Start::Result> Start::result(const Inertial& now) const {
   s.R = fromRollPitchYaw({roll, pitch, yaw->yaw_rad});
   s.lever = lever_;
   s.axle_m = params_.imu_to_rear_axle_m;
+  if (!heading_) s.mounted_rad = mounted();
   s.p = Eigen::Vector3d(axes_[0].position(), axes_[1].position(), axes_[2].position()) - s.R * lever_;
   s.v = v_antenna - s.R * now.rate_radps.cross(lever_);
 
@@ -227,7 +245,9 @@ std::optional<Start::Result> Start::result(const Inertial& now) const {
   P.block<3, 1>(kP, kHeadingSlow) = -shared * J.col(2);
   P.block<1, 3>(kHeadingSlow, kP) = -shared * J.col(2).transpose();
   P(kMountYaw, kMountYaw) = P(kMountPitch, kMountPitch) = e.mount_sigma_rad * e.mount_sigma_rad;
-  P(kAxle, kAxle) = params_.imu_to_rear_axle_sigma_m * params_.imu_to_rear_axle_sigma_m;
+  const double axle_sigma =
+      std::abs(s.mounted_rad) > kReversed_rad ? kReversedAxle_m : params_.imu_to_rear_axle_sigma_m;
+  P(kAxle, kAxle) = axle_sigma * axle_sigma;
   P(kDelay, kDelay) = e.gnss_delay_sigma_s * e.gnss_delay_sigma_s;
   return result;
 }

@@ -18,6 +18,7 @@
 #include <optional>
 
 #include "atlas/localization/eskf_motion.hpp"
+#include "atlas/localization/eskf_mount.hpp"
 #include "atlas/localization/imu_monitor.hpp"
 #include "atlas/localization/kalman_1d_axis.hpp"
 #include "atlas/localization/positioning_filter.hpp"
@@ -34,6 +35,9 @@ class Start {
   void orientation(const Eigen::Quaterniond& R_enu_imu);
   void fix(const Eigen::Vector3d& p_map_antenna, const Eigen::Matrix3d& R_m2);
   void heading(double yaw_rad, double variance);
+  /// Yaw of the imu as the fixes and the accelerometers together have it; none until enough was seen, or when
+  /// the course is not known.
+  [[nodiscard]] std::optional<double> seenYaw() const;
   [[nodiscard]] bool upKnown() const { return own_up_ || elapsed_s_ > kUpAfter_s; }
 
   struct Result {
@@ -55,6 +59,7 @@ class Start {
     double variance;
   };
   [[nodiscard]] std::optional<Yaw> course() const;
+  [[nodiscard]] double mounted() const;  ///< 0 when the imu looks forward, as it should
   [[nodiscard]] Up up(double yaw_rad) const;
   [[nodiscard]] double velocityVariance() const;  ///< of the worse horizontal axis
   [[nodiscard]] Eigen::Vector3d velocity() const;
@@ -71,6 +76,7 @@ class Start {
   Eigen::Vector3d up_imu_ = Eigen::Vector3d::Zero();
   double heading_age_s_ = 0.0;
 
+  MountYaw mount_;
   ImuMonitor monitor_;
   std::optional<ImuMonitor::Block> block_before_;
   int still_blocks_ = 0;

@@ -6,8 +6,8 @@
 //   nominal state   p, v in map (ENU at the anchor); R = R_map_imu; biases in the imu frame; the slow error
 //   of
 //                   the GNSS heading; where the vehicle is on its wheels: direction of driving in the imu
-//                   frame (mount yaw and pitch, tangents) and distance of the rear axle behind the imu; lever
-//                   arm of the antenna; delay of the fixes
+//                   frame (a constant angle about z, then mount yaw and pitch, tangents from there) and
+//                   distance of the rear axle behind the imu; lever arm of the antenna; delay of the fixes
 //   error state     true = nominal (+) error, additive but for the attitude: R_true = exp([theta]x) R, the
 //                   rotation error theta about the axes of map (the "global" error of Sola, 7.1)
 #pragma once
@@ -28,8 +28,8 @@ enum Index {
   kGyro = 9,          ///< gyroscope bias, rad/s
   kAccel = 12,        ///< accelerometer bias, m/s^2
   kHeadingSlow = 15,  ///< slow error of the GNSS heading, rad
-  kMountYaw = 16,     ///< tangent of the angle from imu x to the direction of driving, about imu z
-  kMountPitch = 17,   ///< same, about imu y
+  kMountYaw = 16,     ///< tangent of the angle from imu x (turned by mounted_rad) to the direction of driving
+  kMountPitch = 17,   ///< same, about the level axis across
   kAxle = 18,         ///< the rear axle is so far behind the imu, m
   kLever = 19,        ///< antenna in the imu frame, m
   kDelay = 22,        ///< a fix stamped t belongs to t - delay, s
@@ -47,6 +47,8 @@ struct State {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();
   double heading_slow_rad = 0.0;
+  double mounted_rad =
+      0.0;  ///< about imu z, not estimated: 0 unless the imu is mounted across (eskf_mount.hpp)
   double mount_yaw = 0.0, mount_pitch = 0.0;
   double axle_m = 0.0;
   Eigen::Vector3d lever = Eigen::Vector3d::Zero();
