@@ -76,6 +76,13 @@ void rigAndOdometry(Bus& bus) {
   bus.template input<StageType, Odometry>(1, "odometry", [](StageType& s, const Odometry& o) { s.push(o); });
 }
 
+/// For stages that gate on the scores of sensors.
+template <class StageType, class Bus>
+void sensorStatus(Bus& bus, std::size_t input) {
+  bus.template input<StageType, SensorStatus>(
+      input, "sensor_status", [](StageType& s, const SensorStatus& status) { s.push(status); });
+}
+
 template <class Bus>
 StageFactory bindMonitor(Bus& bus, const MonitorParams& params) {
   using S = MonitorStage;
@@ -119,18 +126,20 @@ template <class Bus>
 StageFactory bindLocalization(Bus& bus, const LocalizationParams& params) {
   using S = LocalizationStage;
   validate(params);
+  const auto at = [&params](typename S::Input input) { return S::gatedInput(params, input); };
   bus.template input<S, StaticTransforms>(S::kTfStatic, "tf_static",
                                           [](S& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
-  bus.template input<S, GnssFix>(S::kGnssFix, "gnss/fix", [](S& s, const GnssFix& fix) { s.push(fix); });
-  bus.template input<S, GnssHeading>(S::kGnssHeading, "gnss/heading",
+  if (!params.gate_on_sensors.empty()) sensorStatus<S>(bus, S::kGateStatus);
+  bus.template input<S, GnssFix>(at(S::kGnssFix), "gnss/fix", [](S& s, const GnssFix& fix) { s.push(fix); });
+  bus.template input<S, GnssHeading>(at(S::kGnssHeading), "gnss/heading",
                                      [](S& s, const GnssHeading& h) { s.push(h); });
-  bus.template input<S, ImuSample>(S::kImu, "imu/data", [](S& s, const ImuSample& imu) { s.push(imu); });
+  bus.template input<S, ImuSample>(at(S::kImu), "imu/data", [](S& s, const ImuSample& imu) { s.push(imu); });
   if (params.receivers.second_receiver) {
-    bus.template input<S, GnssFix>(S::kSecondFix, "imu/gnss/fix",
+    bus.template input<S, GnssFix>(at(S::kSecondFix), "imu/gnss/fix",
                                    [](S& s, const GnssFix& fix) { s.pushSecond(fix); });
   }
   if (params.barometer.barometer) {
-    bus.template input<S, ScalarSample>(S::kPressure, "imu/pressure",
+    bus.template input<S, ScalarSample>(at(S::kPressure), "imu/pressure",
                                         [](S& s, const ScalarSample& pressure) { s.pushPressure(pressure); });
   }
   const auto odometry = bus.template output<Odometry>("odometry");
@@ -192,7 +201,10 @@ StageFactory bindCameraLidar(Bus& bus, const CameraLidarParams& params) {
   rigAndOdometry<S>(bus);
   inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
   inputs<S, CameraInfo>(bus, first_info, params.cameras, "/camera_info");
-  inputs<S, Detections>(bus, first_info + params.cameras.size(), params.cameras, "/detections");
+  const std::size_t gate = first_info + params.cameras.size();
+  const bool gated = !params.gate_on_sensors.empty();
+  if (gated) sensorStatus<S>(bus, gate);
+  inputs<S, Detections>(bus, gate + (gated ? 1 : 0), params.cameras, "/detections");
   const auto frustums = outputs<Frustums>(bus, params.cameras, "/frustums");
   const auto merged = bus.template output<Frustums>("frustums");
   return [=] {

@@ -37,13 +37,22 @@ class ParamReader {
     std::vector<std::string> names;
     handle_.getParamNames(names);
     for (const std::string& name : names) {
-      if (name.compare(0, prefix.size(), prefix) == 0 && read_.count(name) == 0) {
+      if (name.compare(0, prefix.size(), prefix) == 0 && !isRead(name)) {
         throw std::invalid_argument("unknown parameter " + name);
       }
     }
   }
 
  private:
+  /// Itself, or the map that it is an entry of.
+  [[nodiscard]] bool isRead(std::string name) const {
+    for (std::size_t end = name.size(); end != std::string::npos; end = name.rfind('/')) {
+      name.resize(end);
+      if (read_.count(name) > 0) return true;
+    }
+    return false;
+  }
+
   ros::NodeHandle handle_;
   std::set<std::string> read_;
 };

@@ -35,6 +35,7 @@ void readParams(Reader& reader, atlas::LocalizationParams& p) {
   reader.read("tilt_time_constant_s", q.tilt_time_constant_s);
   reader.read("velocity_heading_min_speed_mps", q.velocity_heading_min_speed_mps);
   reader.read("max_imu_gap_s", q.max_imu_gap_s);
+  reader.readOptional("gate_on_sensors", p.gate_on_sensors);
   atlas::ReceiverParams& r = p.receivers;
   reader.readOptional("second_receiver", r.second_receiver);
   reader.readOptional("second_gnss_antenna_frame", r.second_gnss_antenna_frame);
@@ -116,6 +117,7 @@ void readParams(Reader& reader, atlas::CameraLidarParams& p) {
   reader.read("min_points", p.min_points);
   reader.read("object_depth_m", p.object_depth_m);
   reader.readOptional("merge_within_s", p.merge_within_s);
+  reader.readOptional("gate_on_sensors", p.gate_on_sensors);
   reader.read("max_pose_gap_s", p.max_pose_gap_s);
 }
 

@@ -20,6 +20,7 @@ std::vector<std::string> inputNames(const CameraLidarParams& params) {
   std::vector<std::string> names = {"tf_static", "odometry"};
   for (const std::string& lidar : params.lidars) names.push_back(lidar + "/batches");
   for (const std::string& camera : params.cameras) names.push_back(camera + "/camera_info");
+  if (!params.gate_on_sensors.empty()) names.emplace_back("sensor_status");
   for (const std::string& camera : params.cameras) names.push_back(camera + "/detections");
   return names;
 }
@@ -86,6 +87,7 @@ void validate(const CameraLidarParams& params) {
   if (params.method != "foreground" && params.method != "median")
     throw std::invalid_argument("camera_lidar: method must be foreground or median, got '" + params.method +
                                 "'");
+  validate(params.gate_on_sensors, "camera_lidar");
   if (!(params.look_ahead_s >= 0.0)) reject("look_ahead_s", ">= 0", params.look_ahead_s);
   if (!(params.recent_s >= 0.0)) reject("recent_s", ">= 0", params.recent_s);
   if (!(params.window_s > 0.0)) reject("window_s", "positive", params.window_s);
@@ -99,6 +101,7 @@ void validate(const CameraLidarParams& params) {
 CameraLidarStage::CameraLidarStage(const CameraLidarParams& params)
     : Stage("camera_lidar", inputNames(params)),
       params_(params),
+      gate_(params.gate_on_sensors),
       look_ahead_(fromSeconds(params.look_ahead_s)),
       poses_(params.max_pose_gap_s),
       window_(fromSeconds(params.window_s)),
@@ -137,11 +140,16 @@ void CameraLidarStage::push(std::size_t camera, const Detections& detections) {
           [this, camera, detections] { take(camera, detections); });
 }
 
+void CameraLidarStage::push(const SensorStatus& status) {
+  enqueue(gateInput(), status.stamp, [this, status] { gate_.add(status); });
+}
+
 void CameraLidarStage::take(std::size_t camera, const Detections& detections) {
   const std::optional<CameraInfo>& info = camera_info_[camera];
   const Outcome<Pose> T_imu_camera =
       info ? rig_.T_imu(info->frame) : Outcome<Pose>(Reason::kMissingIntrinsics);
-  Waiting waiting{camera, detections, info, T_imu_camera, window_.since(detections.stamp)};
+  const bool trusted = gate_.open(params_.cameras[camera]);
+  Waiting waiting{camera, detections, info, trusted, T_imu_camera, window_.since(detections.stamp)};
   waiting_.push_back(std::move(waiting));
   answerReady();
 }
@@ -198,7 +206,9 @@ void CameraLidarStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map
   const std::size_t boxes = waiting.detections.boxes.size();
   const Outcome<Intrinsics> none = Reason::kMissingIntrinsics;
   const Outcome<Intrinsics>& intrinsics = waiting.info ? intrinsics_[waiting.camera].of(*waiting.info) : none;
-  if (!intrinsics) {
+  if (!waiting.trusted) {
+    counters_.add("skipped detection: score of its camera below its limit", boxes);
+  } else if (!intrinsics) {
     counters_.skip("detection", intrinsics.reason(), boxes);
   } else if (!waiting.T_imu_camera) {
     counters_.skip("detection", waiting.T_imu_camera.reason(), boxes);

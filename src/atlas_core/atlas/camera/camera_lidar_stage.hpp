@@ -14,6 +14,7 @@
 #include "atlas/camera/intrinsics_cache.hpp"
 #include "atlas/camera/pose_history.hpp"
 #include "atlas/sensor/products.hpp"
+#include "atlas/sensor/sensor_gate.hpp"
 
 namespace atlas {
 
@@ -32,20 +33,22 @@ struct CameraLidarParams {
   double object_depth_m = 1.0;  ///< far plane = near plane + this, for median; else where its points end
   double max_pose_gap_s = 0.5;
   double merge_within_s = 0.03;  ///< images of different cameras so near in time show the same objects
+  SensorLimits gate_on_sensors;  ///< detections of cameras below get no frustums
 };
 void validate(const CameraLidarParams& params);
 
 class CameraLidarStage : public Stage {
  public:
   /// Inputs: 0 tf_static, 1 odometry, then batches of each lidar, then camera_info of each camera, then
-  /// detections of each camera.
+  /// sensor_status with a gate, then detections of each camera.
   enum Input : std::size_t { kTfStatic, kOdometry, kFirstLidar };
   [[nodiscard]] std::size_t lidarInput(std::size_t i) const { return kFirstLidar + i; }
   [[nodiscard]] std::size_t cameraInfoInput(std::size_t c) const {
     return kFirstLidar + params_.lidars.size() + c;
   }
+  [[nodiscard]] std::size_t gateInput() const { return cameraInfoInput(params_.cameras.size()); }
   [[nodiscard]] std::size_t detectionsInput(std::size_t c) const {
-    return cameraInfoInput(c) + params_.cameras.size();
+    return gateInput() + (params_.gate_on_sensors.empty() ? 0 : 1) + c;
   }
 
   explicit CameraLidarStage(const CameraLidarParams& params);
@@ -54,6 +57,7 @@ class CameraLidarStage : public Stage {
   void push(std::size_t lidar, const BatchedSweepPtr& batches);
   void push(std::size_t camera, const CameraInfo& info);
   void push(std::size_t camera, const Detections& detections);
+  void push(const SensorStatus& status);
 
   /// One per Detections, in order per camera; without frustums when there was no pose, intrinsics or points.
   std::function<void(std::size_t camera, const Frustums&)> on_frustums;
@@ -71,6 +75,7 @@ class CameraLidarStage : public Stage {
     std::size_t camera;
     Detections detections;
     std::optional<CameraInfo> info;       ///< newest at the image's turn
+    bool trusted;                         ///< by the gate, at the image's turn
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
     std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn, and those that came since
   };
@@ -85,6 +90,7 @@ class CameraLidarStage : public Stage {
 
   CameraLidarParams params_;
   Rig rig_;
+  SensorGate gate_;
   Duration look_ahead_;
   PoseHistory poses_;
   CameraWindow window_;

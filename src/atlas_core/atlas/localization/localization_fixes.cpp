@@ -98,7 +98,7 @@ void LocalizationStage::onInnovation(const InnovationRecord& record) {
 
 void LocalizationStage::use(const GnssFix& fix) {
   counters_.add("fix");
-  if (!isPosition(fix, "fix")) return;
+  if (!isPosition(fix, "fix") || !trusts("gnss", "fix")) return;
   receivers_.begin(fix.stamp);
   anchorAt(fix);
   if (params_.smoothed) {
@@ -131,7 +131,7 @@ void LocalizationStage::usePressure(const ScalarSample& pressure) {
 
 void LocalizationStage::useSecond(const GnssFix& fix) {
   counters_.add("second fix");
-  if (!isPosition(fix, "second fix")) return;
+  if (!isPosition(fix, "second fix") || !trusts("imu_gnss", "second fix")) return;
   receivers_.begin(fix.stamp);
   const Geodetic& g = fix.position;
   const bool repeated = second_before_ && g.latitude_deg == second_before_->latitude_deg &&

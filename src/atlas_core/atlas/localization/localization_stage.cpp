@@ -12,7 +12,9 @@ namespace {
 constexpr double kMaxNormError = 1e-2;  // quaternions recorded with six digits, with room
 
 std::vector<std::string> inputNames(const LocalizationParams& params) {
-  std::vector<std::string> names = {"tf_static", "gnss/fix", "gnss/heading", "imu"};
+  std::vector<std::string> names = {"tf_static"};
+  if (!params.gate_on_sensors.empty()) names.emplace_back("sensor_status");
+  names.insert(names.end(), {"gnss/fix", "gnss/heading", "imu"});
   if (params.receivers.second_receiver || params.barometer.barometer) names.emplace_back("imu/gnss/fix");
   if (params.barometer.barometer) names.emplace_back("imu/pressure");
   return names;
@@ -22,6 +24,7 @@ std::vector<std::string> inputNames(const LocalizationParams& params) {
 void validate(const LocalizationParams& params) {
   Counters counters;
   makePositioningFilter(params.filter, params.positioning, Eigen::Vector3d::Zero(), {}, counters);
+  validate(params.gate_on_sensors, "localization");
   validate(params.receivers);
   validate(params.imu_guard);
   validate(params.barometer);
@@ -32,6 +35,7 @@ void validate(const LocalizationParams& params) {
 LocalizationStage::LocalizationStage(const LocalizationParams& params)
     : Stage("localization", inputNames(params)),
       params_(params),
+      gate_(params.gate_on_sensors),
       receivers_(params.receivers, counters_),
       guard_(params.imu_guard, counters_),
       barometer_(params.barometer, counters_),
@@ -45,26 +49,36 @@ void LocalizationStage::push(Stamp stamp, const StaticTransforms& transforms) {
   enqueue(kTfStatic, stamp, [this, transforms] { rig_.add(transforms); });
 }
 void LocalizationStage::push(const GnssFix& fix) {
-  enqueue(kGnssFix, fix.stamp, [this, fix] { use(fix); });
+  enqueue(gatedInput(params_, kGnssFix), fix.stamp, [this, fix] { use(fix); });
 }
 void LocalizationStage::pushSecond(const GnssFix& fix) {
   ATLAS_CHECK(params_.receivers.second_receiver, "localization: there is no second receiver");
-  enqueue(kSecondFix, fix.stamp, [this, fix] { useSecond(fix); });
+  enqueue(gatedInput(params_, kSecondFix), fix.stamp, [this, fix] { useSecond(fix); });
 }
 void LocalizationStage::pushPressure(const ScalarSample& pressure) {
   ATLAS_CHECK(params_.barometer.barometer, "localization: there is no barometer");
-  enqueue(kPressure, pressure.stamp, [this, pressure] { usePressure(pressure); });
+  enqueue(gatedInput(params_, kPressure), pressure.stamp, [this, pressure] { usePressure(pressure); });
 }
 void LocalizationStage::push(const GnssHeading& heading) {
-  enqueue(kGnssHeading, heading.stamp, [this, heading] { use(heading); });
+  enqueue(gatedInput(params_, kGnssHeading), heading.stamp, [this, heading] { use(heading); });
 }
 void LocalizationStage::push(const ImuSample& sample) {
-  enqueue(kImu, sample.stamp, [this, sample] { use(sample); });
+  enqueue(gatedInput(params_, kImu), sample.stamp, [this, sample] { use(sample); });
+}
+void LocalizationStage::push(const SensorStatus& status) {
+  ATLAS_CHECK(!params_.gate_on_sensors.empty(), "localization: there is no gate");
+  enqueue(kGateStatus, status.stamp, [this, status] { gate_.add(status); });
+}
+
+bool LocalizationStage::trusts(const char* sensor, const char* what) {
+  if (gate_.open(sensor)) return true;
+  counters_.add(std::string("skipped ") + what + ": score of " + sensor + " below its limit");
+  return false;
 }
 
 void LocalizationStage::use(const GnssHeading& heading) {
   counters_.add("heading");
-  if (params_.smoothed) return;
+  if (params_.smoothed || !trusts("gnss", "heading")) return;
   if (!std::isfinite(heading.yaw_rad)) {
     counters_.skip("heading", Reason::kNotFinite);
     return;

@@ -16,6 +16,7 @@
 #include "atlas/localization/positioning_filter.hpp"
 #include "atlas/localization/receivers.hpp"
 #include "atlas/sensor/products.hpp"
+#include "atlas/sensor/sensor_gate.hpp"
 
 namespace atlas {
 
@@ -28,6 +29,7 @@ struct LocalizationParams {
   ReceiverParams receivers;
   ImuGuardParams imu_guard;
   BarometerParams barometer;
+  SensorLimits gate_on_sensors;  ///< gnss, imu_gnss: fixes and headings below are left out
   /// A smoothed run over the same data: the stage answers from it instead of filtering (second pass offline).
   std::shared_ptr<const eskf::History> smoothed;
 };
@@ -45,6 +47,12 @@ class LocalizationStage : public Stage {
     kPressure
   };  ///< the last two: if asked for
 
+  /// With a gate its status is input 1, and those after tf_static come one later.
+  static std::size_t gatedInput(const LocalizationParams& params, Input input) {
+    return input == kTfStatic || params.gate_on_sensors.empty() ? input : input + 1;
+  }
+  static constexpr std::size_t kGateStatus = 1;
+
   explicit LocalizationStage(const LocalizationParams& params);
   ~LocalizationStage() override;
 
@@ -54,6 +62,7 @@ class LocalizationStage : public Stage {
   void pushPressure(const ScalarSample& pressure);
   void push(const GnssHeading& heading);
   void push(const ImuSample& sample);
+  void push(const SensorStatus& status);
 
   /// Records the run for smoothing; call before the first event. Throws std::invalid_argument for a filter
   /// that has no smoother. The history must outlive the stage.
@@ -82,6 +91,8 @@ class LocalizationStage : public Stage {
   void giveToFilter(const Receivers::Fix& fix, Receivers::Use receiver);
   void onInnovation(const InnovationRecord& record);
 
+  /// False: counted, not to be used.
+  bool trusts(const char* sensor, const char* what);
   void usePressure(const ScalarSample& pressure);
   void use(const GnssHeading& heading);
   void use(const ImuSample& sample);
@@ -89,6 +100,7 @@ class LocalizationStage : public Stage {
 
   LocalizationParams params_;
   Rig rig_;
+  SensorGate gate_;
   std::optional<LocalEnu> map_;        ///< set with the first fix
   std::optional<ImuSample> last_imu_;  ///< before there is a filter: the first fix lies between two samples
   void emit(const Odometry& odometry);
