@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The real recordings as plain lists for positioning_table.py: IMU rows, GNSS rows, reference positions.
 
-A drive is a dict: imu = [(stamp_ns, ax, ay, az, gx, gy, gz)], gnss = [(stamp_ns, lat, lon, alt, sd_e, sd_n, sd_u)],
+A drive is a dict: imu = [(stamp_ns, ax, ay, az, gx, gy, gz[, qx, qy, qz, qw])], the IMU's own orientation where the recording
+has one, gnss = [(stamp_ns, lat, lon, alt, sd_e, sd_n, sd_u)],
 reference = [(stamp_ns, lat, lon, alt)]. Axes forward-left-up, SI units."""
 import ast
 import calendar
@@ -67,6 +68,18 @@ def npy(path):
     return [values[i * shape[1]:(i + 1) * shape[1]] for i in range(shape[0])]
 
 
+def quaternion(roll, pitch, yaw):
+    cr, sr, cp, sp, cy, sy = (f(a / 2) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
+    return (sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy)
+
+
+def product(a, b):
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz)
+
+
 def walk(root):
     folder = root / "gnss_imu_rtk_walk/walk_0827"
     gnss, reference = [], []
@@ -125,12 +138,13 @@ def kitti_rows(folder):
 
 
 def kitti(folder, random, sigma_m=2.0, rate_hz=1.0, heading_deg=None):
-    """The oxts stream degraded on purpose: fixes of `rate_hz` with white noise, a heading with noise of `heading_deg` or none."""
+    """The oxts stream degraded on purpose: fixes of `rate_hz` with white noise, a heading with noise of `heading_deg` or none.
+    The orientation is its roll and pitch; its yaw is the reference's and stays out (0 stands for it)."""
     imu, gnss, reference, enu, due = [], [], [], None, None
     for stamp, v in kitti_rows(folder):
         if imu and stamp <= imu[-1][0]:
             continue
-        imu.append((stamp, *v[11:14], *v[17:20]))
+        imu.append((stamp, *v[11:14], *v[17:20], *quaternion(v[3], v[4], 0.0)))
         reference.append((stamp, *v[0:3]))
         enu = enu or Enu(*v[0:3])
         due = stamp if due is None else due
@@ -156,7 +170,9 @@ def husky(root):
             kind, stamp = getattr(message, "_type", ""), message.header.stamp.to_nsec()
             if kind == "sensor_msgs/Imu":
                 a, w, q = message.linear_acceleration, message.angular_velocity, message.orientation
-                imu.append((stamp, -a.z, -a.x, a.y, -w.z, -w.x, w.y))
+                # The columns of the turn are the axes forward, left, up as the IMU has them: -z, -x, y.
+                own = product((q.x, q.y, q.z, q.w), (-0.5, 0.5, 0.5, 0.5))
+                imu.append((stamp, -a.z, -a.x, a.y, -w.z, -w.x, w.y, *own))
                 yaw_deg = math.degrees(math.atan2(2 * (q.x * q.y + q.w * q.z), 1 - 2 * (q.y**2 + q.z**2))) - compass_to_course_deg
             elif kind == "sensor_msgs/NavSatFix" and message.status.status >= 0 and yaw_deg is not None:
                 c = message.position_covariance

@@ -67,13 +67,20 @@ def nees(e, c):
 
 
 class Prepared:
-    """The folder of a drive with its imu.csv, written once."""
+    """The folder of a drive with its IMU files, written once: imu.csv, and with own_only_for, the one filter that may see the
+    IMU's own orientation, plain.csv for the others."""
 
-    def __init__(self, drive):
+    def __init__(self, drive, own_only_for=None):
         self.drive = drive
         self.keep = tempfile.TemporaryDirectory()
         self.folder = Path(self.keep.name)
+        self.own_only_for = own_only_for
         write(self.folder / "imu.csv", IMU_HEAD + (",qx,qy,qz,qw" if len(drive["imu"][0]) > 7 else ""), drive["imu"])
+        if own_only_for:
+            write(self.folder / "plain.csv", IMU_HEAD, [row[:7] for row in drive["imu"]])
+
+    def imu_for(self, name):
+        return self.folder / ("imu.csv" if self.own_only_for in (None, name) else "plain.csv")
 
     def __enter__(self):
         return self
@@ -97,7 +104,7 @@ class Run:
         with tempfile.TemporaryDirectory(dir=prepared.folder) as folder:
             out = Path(folder)
             write(out / "gnss.csv", GNSS_HEAD + (",heading_deg,sd_heading" if len(gnss[0]) > 7 else ""), gnss)
-            command = [program, "--imu", prepared.folder / "imu.csv", "--gnss", out / "gnss.csv", "--out", out,
+            command = [program, "--imu", prepared.imu_for(name), "--gnss", out / "gnss.csv", "--out", out,
                        "--lever-arm", ",".join(map(str, lever)), "--filter", name] + ["--covariances"] * covariances
             self.ok = subprocess.run(command, capture_output=True, check=False).returncode == 0
             if not self.ok:
