@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "atlas_ros/point_cloud.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <memory>
 
@@ -51,32 +53,36 @@ const PointField* find(const sensor_msgs::PointCloud2& msg, std::initializer_lis
   return nullptr;
 }
 
+/// The suite's machines are little-endian.
 template <class T>
-double load(const std::uint8_t* data) {
+double load(const std::uint8_t* data, bool big_endian) {
+  std::uint8_t bytes[sizeof(T)];
+  std::copy_n(data, sizeof(T), bytes);
+  if (big_endian) std::reverse(std::begin(bytes), std::end(bytes));
   T value;
-  std::memcpy(&value, data, sizeof value);
+  std::memcpy(&value, bytes, sizeof value);
   return static_cast<double>(value);
 }
 
-double read(const PointField& f, const std::uint8_t* point) {
+double read(const PointField& f, const std::uint8_t* point, bool big_endian) {
   const std::uint8_t* data = point + f.offset;
   switch (f.datatype) {
     case PointField::INT8:
-      return load<std::int8_t>(data);
+      return load<std::int8_t>(data, big_endian);
     case PointField::UINT8:
-      return load<std::uint8_t>(data);
+      return load<std::uint8_t>(data, big_endian);
     case PointField::INT16:
-      return load<std::int16_t>(data);
+      return load<std::int16_t>(data, big_endian);
     case PointField::UINT16:
-      return load<std::uint16_t>(data);
+      return load<std::uint16_t>(data, big_endian);
     case PointField::INT32:
-      return load<std::int32_t>(data);
+      return load<std::int32_t>(data, big_endian);
     case PointField::UINT32:
-      return load<std::uint32_t>(data);
+      return load<std::uint32_t>(data, big_endian);
     case PointField::FLOAT32:
-      return load<float>(data);
+      return load<float>(data, big_endian);
     default:
-      return load<double>(data);
+      return load<double>(data, big_endian);
   }
 }
 
@@ -107,7 +113,7 @@ void readTimes(const sensor_msgs::PointCloud2& msg, atlas::Sweep& sweep) {
     return;
   }
   std::vector<double> raw(sweep.points.size());
-  for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = read(*time, pointAt(msg, i));
+  for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = read(*time, pointAt(msg, i), msg.is_bigendian != 0);
   const std::vector<float> times = atlas::relativeTimes(raw, isWhole(*time), sweep.stamp);
   for (std::size_t i = 0; i < raw.size(); ++i) sweep.points[i].time = times[i];
 }
@@ -116,15 +122,16 @@ void readForeign(const sensor_msgs::PointCloud2& msg, const PointField& x, const
                  const PointField& z, atlas::Sweep& sweep) {
   const PointField* intensity = find(msg, {"intensity", "reflectivity", "i"});
   const PointField* ring = find(msg, {"ring", "channel", "line"});
+  const bool big = msg.is_bigendian != 0;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     const std::uint8_t* data = pointAt(msg, i);
     atlas::LidarPoint& p = sweep.points[i];
-    p.x = static_cast<float>(read(x, data));
-    p.y = static_cast<float>(read(y, data));
-    p.z = static_cast<float>(read(z, data));
+    p.x = static_cast<float>(read(x, data, big));
+    p.y = static_cast<float>(read(y, data, big));
+    p.z = static_cast<float>(read(z, data, big));
     if (p.x == 0 && p.y == 0 && p.z == 0) p.x = p.y = p.z = std::numeric_limits<float>::quiet_NaN();
-    if (intensity != nullptr) p.intensity = static_cast<float>(read(*intensity, data));
-    if (ring != nullptr) p.ring = static_cast<std::uint16_t>(read(*ring, data));
+    if (intensity != nullptr) p.intensity = static_cast<float>(read(*intensity, data, big));
+    if (ring != nullptr) p.ring = static_cast<std::uint16_t>(read(*ring, data, big));
   }
   readTimes(msg, sweep);
 }
@@ -164,9 +171,9 @@ atlas::Outcome<atlas::SweepPtr> fromMsg(const sensor_msgs::PointCloud2& msg) {
   const bool short_data =
       msg.row_step < row_bytes ||
       msg.data.size() < static_cast<std::size_t>(msg.height - 1) * msg.row_step + row_bytes;
-  if (msg.is_bigendian || short_data) return atlas::Reason::kBadLayout;
+  if (short_data) return atlas::Reason::kBadLayout;
   sweep->points.resize(count);
-  if (isOurLayout(msg) && msg.row_step == row_bytes) {
+  if (isOurLayout(msg) && !msg.is_bigendian && msg.row_step == row_bytes) {
     std::memcpy(sweep->points.data(), msg.data.data(), count * sizeof(atlas::LidarPoint));
     return atlas::SweepPtr(sweep);
   }

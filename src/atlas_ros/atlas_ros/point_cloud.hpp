@@ -20,7 +20,7 @@ sensor_msgs::PointCloud2 toMsg(const atlas::Sweep& sweep);
 /// x, y, z are required (any type), intensity, ring and time optional; other fields are passed over. Time
 /// fields understood: `time`, `t`, `timestamp`, `offset_time`, `time_stamp` of any type and unit
 /// (atlas::relativeTimes); without one, time is rebuilt from azimuth or order (atlas::rebuildTimes).
-/// kBadLayout for big-endian data, missing or short fields.
+/// kBadLayout for missing or short fields. Big-endian data is turned round.
 atlas::Outcome<atlas::SweepPtr> fromMsg(const sensor_msgs::PointCloud2& msg);
 
 }  // namespace atlas_ros
