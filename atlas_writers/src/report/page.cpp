@@ -15,6 +15,7 @@
 #include "report/pcd_file.hpp"
 #include "report/picture_choice.hpp"
 #include "report/run_tables.hpp"
+#include "report/sensor_timeline.hpp"
 #include "report/trajectory_file.hpp"
 #include "report/trajectory_plot.hpp"
 
@@ -128,6 +129,16 @@ std::string datasetSection(const fs::path& out) {
   return html.empty() ? "" : section("Thermal dataset", html);
 }
 
+std::string sensorSection(const fs::path& out) {
+  const std::vector<SensorBand> bands = readStatus(out / "sensors/status.csv");
+  if (bands.empty()) return "";
+  return section("Sensors over time",
+                 figureOf(timelineSvg(bands),
+                          "Score of the sensor monitor: green 1, amber 0.5, red 0; anomalies "
+                          "where they began") +
+                     toHtml(sensorTable(bands)));
+}
+
 std::string subtitleOf(const json& run, const std::string& label) {
   std::string text = label;
   for (const char* key : {"mode", "version"}) {
@@ -156,7 +167,8 @@ fs::path writeReport(const PageOptions& options) {
     body += section("Errors against the truth of the synthetic drive",
                     evaluationHtml(readJson<nlohmann::ordered_json>(options.evaluation)));
   }
-  body += gallerySection(options, trajectory, folder) + datasetSection(options.out) + tableSections(run);
+  body += gallerySection(options, trajectory, folder) + sensorSection(options.out) +
+          datasetSection(options.out) + tableSections(run);
   const std::string html = document("Atlas Fusion report", subtitleOf(run, options.record_label), body);
   writeWhole(folder / "index.html", html.data(), html.size());
   return folder / "index.html";
