@@ -98,4 +98,16 @@ inline cv::Mat kittiDepth(const fs::path& path) {
   return depth;
 }
 
+/// The same of a 16-bit picture of disparities x 256 px between the colour cameras.
+inline cv::Mat depthOfDisparity(const fs::path& path, double focal_px) {
+  cv::Mat depth = kittiDepth(path);
+  for (int row = 0; row < depth.rows; ++row) {
+    for (int column = 0; column < depth.cols; ++column) {
+      float& value = depth.at<float>(row, column);
+      if (value > 0.0F) value = static_cast<float>(focal_px * kBaseline_m) / value;
+    }
+  }
+  return depth;
+}
+
 }  // namespace atlas::test
