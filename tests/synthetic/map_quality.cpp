@@ -3,6 +3,7 @@
 // sweeps are put together with the poses of the suite, de-skewed in several ways; with the truth of a
 // synthetic drive the error of each point is given, too.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -29,6 +30,7 @@ struct Arguments {
   std::string poses = "smoothed", truth, json;
   std::size_t sweeps = 10, stride = 1;
   double min_range_m = 3.0, max_range_m = 40.0, min_speed_mps = 1.0, min_height_m = -1e9;
+  double cut_margin = 0.0;
   MapQualityParams quality{0.3, 12, 0};
 };
 
@@ -88,12 +90,20 @@ std::optional<Window> judge(const std::vector<SweepPtr>& sweeps, const Arguments
   return window;
 }
 
-/// Without what is out of range or lower than asked: the ground is flat, however wrong the times are.
+/// Without what is out of range, lower than asked (the ground is flat, however wrong the times are) or too
+/// near to the cut: lasers that look aside of the sensor's own direction are at the other end of the sweep
+/// there.
 SweepPtr judged(const SweepPtr& sweep, const Arguments& arguments, const Pose& T_imu_lidar) {
   auto result =
       std::make_shared<Sweep>(*gateByRange(sweep, arguments.min_range_m, arguments.max_range_m).sweep);
+  const auto [first, last] =
+      std::minmax_element(sweep->points.begin(), sweep->points.end(),
+                          [](const LidarPoint& a, const LidarPoint& b) { return a.time < b.time; });
+  const float first_s = first->time, last_s = last->time;
+  const auto margin_s = static_cast<float>(arguments.cut_margin) * (last_s - first_s);
   for (LidarPoint& p : result->points) {
-    if ((T_imu_lidar * Eigen::Vector3d(p.x, p.y, p.z)).z() < arguments.min_height_m)
+    const bool at_cut = p.time < first_s + margin_s || p.time > last_s - margin_s;
+    if (at_cut || (T_imu_lidar * Eigen::Vector3d(p.x, p.y, p.z)).z() < arguments.min_height_m)
       p.x = p.y = p.z = std::numeric_limits<float>::quiet_NaN();
   }
   return result;
@@ -102,7 +112,7 @@ SweepPtr judged(const SweepPtr& sweep, const Arguments& arguments, const Pose& T
 /// Every lidar's sweeps, in windows and against the truth.
 struct Results {
   std::map<std::string, std::vector<Window>> windows;  ///< by topic
-  std::map<std::string, std::size_t> passed_over;      ///< windows that stood still or had no pose
+  std::map<std::string, std::size_t> passed_over;      ///< windows that stood still
   std::optional<synthetic::DeskewErrors> errors;
 };
 
@@ -122,6 +132,7 @@ Results measure(const Arguments& arguments, const PositionedRun& run) {
     if (!T_imu_lidar) throw std::runtime_error(topic + ": no calibration for frame " + (*sweep)->frame);
     const int index = counts[topic]++;
     if (results.errors) results.errors->add(topic.substr(0, topic.find('/')), index, *sweep, *T_imu_lidar);
+    if (!placed(*sweep, DeskewWay::kPerPoint, run.trajectory, *T_imu_lidar)) continue;  // no poses there
     std::vector<SweepPtr>& sweeps = waiting[{topic, static_cast<std::size_t>(index) % arguments.stride}];
     sweeps.push_back(judged(*sweep, arguments, *T_imu_lidar));
     if (sweeps.size() < arguments.sweeps) continue;
@@ -162,18 +173,21 @@ void printWindows(const std::string& topic, const std::vector<Window>& windows,
 /// How much of the skew the surfaces say is left: 0 none, 1 as without de-skew.
 void printSkewLeft(const std::vector<Window>& windows, nlohmann::ordered_json& json) {
   for (const DeskewWay way : kWays) {
-    std::vector<double> shares;
+    std::vector<double> shares, minus_none;
     std::size_t neighbourhoods = 0;
     for (const Window& window : windows) {
       const auto found = window.skew_left.find(way);
       if (found == window.skew_left.end()) continue;
       shares.push_back(found->second.share);
+      const auto none = window.skew_left.find(DeskewWay::kNone);
+      if (none != window.skew_left.end()) minus_none.push_back(found->second.share - none->second.share);
       neighbourhoods += found->second.neighbourhoods;
     }
     if (shares.empty()) continue;
-    const Spread spread = spreadOf(shares);
-    std::printf("skew left, %-11s: %.3f +- %.3f (%zu windows, %zu neighbourhoods)\n", toString(way),
-                spread.mean, spread.error, shares.size(), neighbourhoods);
+    const Spread spread = spreadOf(shares), gain = spreadOf(minus_none);
+    std::printf("skew left, %-11s: %.3f +- %.3f, minus none %.3f +- %.3f (%zu windows, %zu neighbourhoods)\n",
+                toString(way), spread.mean, spread.error, gain.mean, gain.error, shares.size(),
+                neighbourhoods);
     json["skew_left"][toString(way)] = {spread.mean, spread.error};
   }
 }
@@ -203,6 +217,7 @@ void printStamps(const std::vector<Window>& windows, nlohmann::ordered_json& jso
 
 MapQuality ofCloud(const std::string& path, const MapQualityParams& params) {
   std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error(path + ": cannot be opened");
   const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   const auto points = decodePcd(bytes);
   if (!points) throw std::runtime_error(path + ": not a point cloud that can be read");
@@ -233,7 +248,7 @@ void judgeRecording(Arguments arguments, nlohmann::ordered_json& json) {
     printStamps(windows, json["windows"][topic]);
   }
   for (const auto& [topic, count] : results.passed_over)
-    std::printf("%s: %zu windows passed over (standing, or no pose)\n", topic.c_str(), count);
+    std::printf("%s: %zu windows passed over (standing)\n", topic.c_str(), count);
   if (results.errors) results.errors->print(json["errors"]);
 }
 
@@ -251,10 +266,13 @@ int run(int argc, char** argv) {
   app.add_option("--stride", a.stride, "every n-th sweep belongs to a window; n windows run side by side")
       ->check(CLI::Range(1, 1000));
   app.add_option("--min-height", a.min_height_m, "m, in the vehicle's frame: lower returns are left out");
+  app.add_option("--cut-margin", a.cut_margin, "share of a sweep left out at its start and at its end")
+      ->check(CLI::Range(0.0, 0.45));
   app.add_option("--radius", a.quality.radius_m, "m, of a neighbourhood")->capture_default_str();
   app.add_option("--max-range", a.max_range_m, "m, farther returns are left out")->capture_default_str();
   app.add_option("--json", a.json, "write the same numbers to this file");
   CLI11_PARSE(app, argc, argv);
+  validate(MapQualityParams{a.quality.radius_m, a.quality.min_neighbours, 1});  // `every` follows later
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const std::string& cloud : a.clouds) {
     const MapQuality quality = ofCloud(cloud, a.quality);
