@@ -240,8 +240,8 @@ StageFactory bindDepth(Bus& bus, const DepthParams& params) {
   rigAndOdometry<S>(bus);
   inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
   inputs<S, CameraInfo>(bus, S::kFirstLidar + params.lidars.size(), params.cameras, "/camera_info");
-  const auto depth = outputs<DepthImagePtr>(bus, params.cameras, "/depth/image");
-  const auto confidence = outputs<DepthImagePtr>(bus, params.cameras, "/depth/confidence");
+  const auto depth = outputs<DepthImagePtr>(bus, params.names(), "/depth/image");
+  const auto confidence = outputs<DepthImagePtr>(bus, params.names(), "/depth/confidence");
   return [=] {
     auto stage = std::make_unique<S>(params);
     stage->on_depth = depth;

@@ -151,6 +151,15 @@ void readParams(Reader& reader, atlas::DepthParams& p) {
   reader.read("surface_step", p.surface_step);
   reader.read("fill_gap_m", p.fill_gap_m);
   reader.read("max_pose_gap_s", p.max_pose_gap_s);
+  reader.readOptional("virtual_camera", p.virtual_camera.name);
+  reader.readOptional("virtual_x_m", p.virtual_camera.x_m);
+  reader.readOptional("virtual_y_m", p.virtual_camera.y_m);
+  reader.readOptional("virtual_z_m", p.virtual_camera.z_m);
+  reader.readOptional("virtual_pitch_deg", p.virtual_camera.pitch_deg);
+  reader.readOptional("virtual_yaw_deg", p.virtual_camera.yaw_deg);
+  reader.readOptional("virtual_width_px", p.virtual_camera.width_px);
+  reader.readOptional("virtual_height_px", p.virtual_camera.height_px);
+  reader.readOptional("virtual_focal_px", p.virtual_camera.focal_px);
 }
 
 }  // namespace atlas_ros

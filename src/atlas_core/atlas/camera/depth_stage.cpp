@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atlas/camera/depth_stage.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -31,6 +32,12 @@ std::vector<std::string> inputNames(const DepthParams& params) {
 
 }  // namespace
 
+std::vector<std::string> DepthParams::names() const {
+  std::vector<std::string> result = cameras;
+  if (!virtual_camera.name.empty()) result.push_back(virtual_camera.name);
+  return result;
+}
+
 void validate(const DepthParams& params) {
   if (params.cameras.empty())
     throw std::invalid_argument("depth: cameras must name at least one camera, got none");
@@ -48,17 +55,22 @@ void validate(const DepthParams& params) {
     reject("surface_step", "in 0..1, not 0 or 1", params.surface_step);
   if (!(params.fill_gap_m >= 0.0)) reject("fill_gap_m", ">= 0", params.fill_gap_m);
   if (!(params.max_pose_gap_s > 0.0)) reject("max_pose_gap_s", "positive", params.max_pose_gap_s);
+  validate(params.virtual_camera);
+  if (std::count(params.cameras.begin(), params.cameras.end(), params.virtual_camera.name) > 0)
+    throw std::invalid_argument("depth: the virtual camera must not be one of cameras, got '" +
+                                params.virtual_camera.name + "'");
 }
 
 DepthStage::DepthStage(const DepthParams& params)
     : Stage("depth", inputNames(params)),
       params_(params),
+      names_(params.names()),
       look_ahead_(fromSeconds(params.look_ahead_s)),
       poses_(params.max_pose_gap_s),
       window_(fromSeconds(params.window_s)),
-      intrinsics_(params.cameras.size(), IntrinsicsCache(params.min_depth_m, params.max_depth_m)),
+      intrinsics_(names_.size(), IntrinsicsCache(params.min_depth_m, params.max_depth_m)),
       image_count_(params.cameras.size(), 0),
-      buffers_(params.cameras.size()) {}
+      buffers_(names_.size()) {}
 
 void DepthStage::push(Stamp stamp, const StaticTransforms& transforms) {
   enqueue(kTfStatic, stamp, [this, transforms] { rig_.add(transforms); });
@@ -85,12 +97,17 @@ void DepthStage::push(std::size_t lidar, const BatchedSweepPtr& batches) {
 
 void DepthStage::push(std::size_t camera, const CameraInfo& info) {
   const std::uint32_t index = image_count_.at(camera)++;  // counted on arrival: a late image keeps its number
-  enqueue(cameraInfoInput(camera), info.stamp, [this, camera, info, index] { take(camera, info, index); });
+  enqueue(cameraInfoInput(camera), info.stamp, [this, camera, info, index] {
+    take(camera, info, index, rig_.T_imu(info.frame));
+    const VirtualCameraParams& from = params_.virtual_camera;
+    if (camera == 0 && !from.name.empty())
+      take(params_.cameras.size(), virtualInfo(from, info.stamp), index, T_imu_virtual(from));
+  });
 }
 
-void DepthStage::take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index) {
-  Waiting waiting{camera, image_index, info, rig_.T_imu(info.frame), window_.since(info.stamp)};
-  waiting_.push_back(std::move(waiting));
+void DepthStage::take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index,
+                      const Outcome<Pose>& T_imu_camera) {
+  waiting_.push_back({camera, image_index, info, T_imu_camera, window_.since(info.stamp)});
   answerReady();
 }
 
@@ -115,7 +132,7 @@ void DepthStage::answerReady() {
 void DepthStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu) {
   auto image = std::make_shared<DepthImage>();
   image->stamp = waiting.info.stamp;
-  image->camera = params_.cameras[waiting.camera];
+  image->camera = names_[waiting.camera];
   image->image_index = waiting.image_index;
   image->camera_info = waiting.info;
   auto confidence = std::make_shared<DepthImage>(*image);

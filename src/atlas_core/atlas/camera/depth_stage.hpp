@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stage: for every frame of a camera (its camera_info is the trigger) the aggregated cloud projected into it
-// (paper IV-E).
+// (paper IV-E), and into a virtual camera whenever the first one has a frame.
 #pragma once
 
 #include <deque>
@@ -15,6 +15,7 @@
 #include "atlas/camera/depth_buffer.hpp"
 #include "atlas/camera/intrinsics_cache.hpp"
 #include "atlas/camera/pose_history.hpp"
+#include "atlas/camera/virtual_camera.hpp"
 #include "atlas/sensor/products.hpp"
 
 namespace atlas {
@@ -33,6 +34,9 @@ struct DepthParams {
   double surface_step = 0.03;  ///< share of the depth from which two depths are two surfaces
   double fill_gap_m = 0.3;     ///< gaps between points of a surface are filled up to this, 0 = none
   double max_pose_gap_s = 0.5;
+  VirtualCameraParams virtual_camera;  ///< its images come after those of the first camera
+  /// Of all images: those of `cameras`, then the virtual one if there is one.
+  [[nodiscard]] std::vector<std::string> names() const;
 };
 void validate(const DepthParams& params);
 
@@ -52,7 +56,7 @@ class DepthStage : public Stage {
   void push(std::size_t camera, const CameraInfo& info);
 
   /// One per camera_info, in stamp order over all cameras; all NaN when there was no pose or no cloud, an
-  /// empty Mat when the camera_info is unusable (counted).
+  /// empty Mat when the camera_info is unusable (counted). `camera`: index in params.names().
   std::function<void(std::size_t camera, const DepthImagePtr&)> on_depth;
   /// Before each of them: how far to believe it. `depth` holds 1 where a point was measured, 0 where nothing
   /// is known, between where a gap was filled (fillGaps); an empty Mat when the image has no depth.
@@ -71,7 +75,8 @@ class DepthStage : public Stage {
     Outcome<Pose> T_imu_camera;           ///< as known at the image's turn
     std::vector<CompactSweepPtr> sweeps;  ///< the window at the image's turn, and those that came since
   };
-  void take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index);
+  void take(std::size_t camera, const CameraInfo& info, std::uint32_t image_index,
+            const Outcome<Pose>& T_imu_camera);
   void answerReady();
   void answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu);
   /// kNoPoints when no sweep of the window has a pose.
@@ -79,6 +84,7 @@ class DepthStage : public Stage {
                                       const Outcome<Pose>& T_map_imu);
 
   DepthParams params_;
+  std::vector<std::string> names_;
   Rig rig_;
   Duration look_ahead_;
   PoseHistory poses_;
