@@ -23,6 +23,7 @@
 
 #include "atlas/base/local_graph.hpp"
 #include "atlas/base/stage.hpp"
+#include "atlas_ros/carried.hpp"
 #include "atlas_ros/message_of.hpp"
 
 namespace atlas_ros {
@@ -45,9 +46,11 @@ class StageLink {
     using Message = typename MessageOf<T>::Message;
     inputs_[index].topic = handle_.resolveName(topic);
     const auto deliver = [this, topic, push](const boost::shared_ptr<const Message>& message) {
+      auto& stage = static_cast<StageType&>(*stage_);
+      if (const T* carried = carriedBy<T>(message)) return push(stage, *carried);
       const auto value = MessageOf<T>::from(*message);
       if (value) {
-        push(static_cast<StageType&>(*stage_), *value);
+        push(stage, *value);
       } else {
         unusable_.skip(topic, value.reason());
       }
@@ -66,7 +69,7 @@ class StageLink {
                                                                        onDisconnect(resolved), {}, latch);
     outputs_.push_back(out);
     return [out](const T& value) {
-      out->publisher.publish(boost::make_shared<typename MessageOf<T>::Message>(MessageOf<T>::to(value)));
+      out->publisher.publish(carrying(MessageOf<T>::to(value), value));
       ++out->count;
     };
   }
