@@ -111,7 +111,7 @@ struct Frustums {
 struct ProjectedDetections {
   Detections detections;  ///< stamp, frame and index of the thermal image; boxes clipped to it
   bool selected = false;  ///< some RGB image chose this thermal frame (false: an empty answer only)
-  std::vector<Stamp> source_stamps;         ///< RGB images that chose it
+  std::vector<Stamp> source_stamps;  ///< RGB images that chose it
   /// Per box: index of the frustum in its source; the largest number for an object missed there, but seen in
   /// the images before and after.
   std::vector<std::uint32_t> source_index;
