@@ -17,6 +17,7 @@ constexpr double kLeftWall_m = 9.0, kEndWall_m = 25.0;
 constexpr double kStripes_m[] = {2.0, -1.5};  // lower edge in y
 constexpr double kStripe_m = 0.15;
 constexpr float kRoad = 12.0F, kPaint = 60.0F, kWall = 30.0F;
+constexpr double kGlitter = 5.0;  // standard deviation of the road's brightness: rough asphalt
 const Pose kPlace{fromRollPitchYaw({0.0, 0.0, 0.5}), Eigen::Vector3d(400.0, -300.0, 250.0)};
 
 bool painted(double y) {
@@ -35,7 +36,8 @@ BatchedSweep seeStreet() {
       const Eigen::Vector3d beam(std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth),
                                  std::sin(up));
       double range_m = beam.z() < 0 ? kHeight_m / -beam.z() : 1e9;
-      float intensity = painted(range_m * beam.y()) ? kPaint : kRoad;
+      const float road = std::max(0.0F, kRoad + static_cast<float>(kGlitter / 0.02 * noise(random)));
+      float intensity = painted(range_m * beam.y()) ? kPaint : road;
       for (const double wall_m : {kLeftWall_m / beam.y(), kEndWall_m / beam.x()}) {
         if (wall_m > 0 && wall_m < range_m) range_m = wall_m, intensity = kWall;
       }

@@ -16,6 +16,7 @@ namespace {
 /// Returns on either side that tell how bright the road is.
 constexpr std::size_t kRoadAround = 24;
 constexpr std::size_t kMinMarkingPoints = 2;
+constexpr double kMarkingSigmas = 5.0;  ///< above the road: rough asphalt glitters
 
 std::vector<std::string> inputNames(const LineParams& params) {
   validate(params);
@@ -87,15 +88,27 @@ Line lineOf(const Trace& trace, const ChainLine& piece, LineKind kind) {
   return line;
 }
 
-/// Median of the road around a return.
-float roadAround(const std::vector<float>& intensities, std::size_t i, std::vector<float>& scratch) {
+struct Brightness {
+  float median = 0, deviation = 0;  ///< median absolute deviation, as the standard deviation of normal noise
+};
+
+float medianOf(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Of the road around a return.
+Brightness roadAround(const std::vector<float>& intensities, std::size_t i, std::vector<float>& scratch) {
   const std::size_t first = i - std::min(i, kRoadAround);
   const std::size_t end = std::min(intensities.size(), i + kRoadAround + 1);
   scratch.assign(intensities.begin() + static_cast<std::ptrdiff_t>(first),
                  intensities.begin() + static_cast<std::ptrdiff_t>(end));
-  const auto middle = scratch.begin() + static_cast<std::ptrdiff_t>(scratch.size() / 2);
-  std::nth_element(scratch.begin(), middle, scratch.end());
-  return *middle;
+  Brightness road;
+  road.median = medianOf(scratch);
+  for (float& value : scratch) value = std::abs(value - road.median);
+  road.deviation = 1.4826F * medianOf(scratch);
+  return road;
 }
 
 /// Where the trace crosses something bright and narrow on the road.
@@ -103,8 +116,11 @@ void addMarkings(const Trace& trace, const LineParams& params, std::vector<Line>
   const std::size_t count = trace.places.size();
   std::vector<float> scratch;
   const auto is_bright = [&](std::size_t i) {
-    const auto road = static_cast<double>(roadAround(trace.intensities, i, scratch));
-    return road > 0.0 && static_cast<double>(trace.intensities[i]) >= params.marking_contrast * road;
+    const auto intensity = static_cast<double>(trace.intensities[i]);
+    const Brightness road = roadAround(trace.intensities, i, scratch);
+    const auto median = static_cast<double>(road.median), deviation = static_cast<double>(road.deviation);
+    return median > 0.0 && intensity >= params.marking_contrast * median &&
+           intensity >= median + kMarkingSigmas * deviation;
   };
   for (std::size_t first = 0; first < count; ++first) {
     if (!is_bright(first)) continue;
