@@ -103,6 +103,7 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   configuration.section<atlas::TrajectoryWriterParams>("trajectory_writer");
   configuration.section<atlas::ObstacleWriterParams>("obstacle_writer");
   configuration.section<atlas::StatusWriterParams>("status_writer");
+  configuration.section<atlas::TraceWriterParams>("trace_writer");
   configuration.rejectUnread();
   for (const std::string& extra : options.write) {
     if (extra != "deskewed") throw std::invalid_argument("--write knows deskewed, got '" + extra + "'");

@@ -57,6 +57,7 @@ ATLAS_WRITER_NODELET(FrustumWriter, atlas::bindFrustumWriter(link, params, out))
 ATLAS_WRITER_NODELET(ThermalWriter, atlas::bindThermalWriter(link, params, out));
 ATLAS_WRITER_NODELET(ObstacleWriter, atlas::bindObstacleWriter(link, out));
 ATLAS_WRITER_NODELET(StatusWriter, atlas::bindStatusWriter(link, out));
+ATLAS_WRITER_NODELET(TraceWriter, atlas::bindTraceWriter(link, out));
 ATLAS_WRITER_NODELET(OverlayWriter, atlas::bindOverlayWriter(link, params, out));
 #undef ATLAS_WRITER_NODELET
 
@@ -70,4 +71,5 @@ PLUGINLIB_EXPORT_CLASS(atlas_writers::FrustumWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ThermalWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ObstacleWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::StatusWriterNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(atlas_writers::TraceWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::OverlayWriterNodelet, nodelet::Nodelet)

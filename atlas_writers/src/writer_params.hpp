@@ -13,6 +13,8 @@ void readParams(Reader&, ObstacleWriterParams&) {}
 template <class Reader>
 void readParams(Reader&, StatusWriterParams&) {}
 template <class Reader>
+void readParams(Reader&, TraceWriterParams&) {}
+template <class Reader>
 void readParams(Reader& reader, CloudWriterParams& p) {
   reader.read("lidars", p.lidars);
 }

@@ -34,6 +34,7 @@ void addWriters(LocalGraph& graph, const WriterParams& params, const std::string
   graph.add([&](Bus& bus) { return bindThermalWriter(bus, params.thermal, out); });
   graph.add([&](Bus& bus) { return bindObstacleWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindStatusWriter(bus, out); });
+  graph.add([&](Bus& bus) { return bindTraceWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindOverlayWriter(bus, params.overlay, out); });
   if (params.write_deskewed) graph.add([&](Bus& bus) { return bindCloudWriter(bus, params.cloud, out); });
 }

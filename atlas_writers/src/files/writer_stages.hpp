@@ -18,6 +18,7 @@
 #include "files/overlay_writer.hpp"
 #include "files/status_writer.hpp"
 #include "files/thermal_writer.hpp"
+#include "files/trace_writer.hpp"
 #include "files/trajectory_writer.hpp"
 
 namespace atlas {
@@ -202,6 +203,11 @@ StageFactory bindStatusWriter(Bus& bus, const std::string& out) {
   bus.template input<S, SensorStatus>(0, "sensor_status",
                                       [](S& s, const SensorStatus& status) { s.push(status); });
   return [=] { return std::make_unique<S>(out); };
+}
+template <class Bus>
+StageFactory bindTraceWriter(Bus& bus, const std::string& out) {
+  inputs<TraceWriterStage, ProductOrigins>(bus, 0, {"camera_lidar", "thermal", "depth"}, "/origins");
+  return [=] { return std::make_unique<TraceWriterStage>(out); };
 }
 template <class Bus>
 StageFactory bindOverlayWriter(Bus& bus, const OverlayWriterParams& params, const std::string& out) {

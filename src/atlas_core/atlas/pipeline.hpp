@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "atlas/base/bus.hpp"
 #include "atlas/base/local_graph.hpp"
 #include "atlas/camera/camera_lidar_stage.hpp"
 #include "atlas/camera/depth_stage.hpp"
@@ -52,23 +53,6 @@ constexpr Stamp kStaticStamp = 0;
 /// Adds the main stages to a graph, in order of the data path.
 void addPipeline(LocalGraph& graph, const PipelineParams& params);
 
-/// One output per name: `<name><suffix>`; the returned function emits on output i.
-template <class T, class Bus>
-std::function<void(std::size_t, const T&)> outputs(Bus& bus, const std::vector<std::string>& names,
-                                                   const std::string& suffix) {
-  std::vector<std::function<void(const T&)>> emits;
-  emits.reserve(names.size());
-  for (const std::string& name : names) emits.push_back(bus.template output<T>(name + suffix));
-  return [emits](std::size_t i, const T& value) { emits.at(i)(value); };
-}
-/// Input first + i takes `<names[i]><suffix>`, pushed as stage.push(i, value).
-template <class StageType, class T, class Bus>
-void inputs(Bus& bus, std::size_t first, const std::vector<std::string>& names, const std::string& suffix) {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    bus.template input<StageType, T>(first + i, names[i] + suffix,
-                                     [i](StageType& s, const T& value) { s.push(i, value); });
-  }
-}
 template <class StageType, class Bus>
 void rigAndOdometry(Bus& bus) {
   bus.template input<StageType, StaticTransforms>(
@@ -207,10 +191,12 @@ StageFactory bindCameraLidar(Bus& bus, const CameraLidarParams& params) {
   inputs<S, Detections>(bus, gate + (gated ? 1 : 0), params.cameras, "/detections");
   const auto frustums = outputs<Frustums>(bus, params.cameras, "/frustums");
   const auto merged = bus.template output<Frustums>("frustums");
+  const auto origins = bus.template output<ProductOrigins>("camera_lidar/origins");
   return [=] {
     auto stage = std::make_unique<S>(params);
     stage->on_frustums = frustums;
     stage->on_merged = merged;
+    stage->on_origins = origins;
     return stage;
   };
 }
@@ -226,9 +212,11 @@ StageFactory bindThermal(Bus& bus, const ThermalParams& params) {
   inputs<S, BatchedSweepPtr>(bus, S::kFirstCamera + params.cameras.size(), params.lidars, "/batches");
   const auto projected =
       bus.template output<ProjectedDetections>(params.thermal_camera + "/projected_detections");
+  const auto origins = bus.template output<ProductOrigins>("thermal/origins");
   return [=] {
     auto stage = std::make_unique<S>(params);
     stage->on_projected = projected;
+    stage->on_origins = origins;
     return stage;
   };
 }
@@ -242,10 +230,12 @@ StageFactory bindDepth(Bus& bus, const DepthParams& params) {
   inputs<S, CameraInfo>(bus, S::kFirstLidar + params.lidars.size(), params.cameras, "/camera_info");
   const auto depth = outputs<DepthImagePtr>(bus, params.names(), "/depth/image");
   const auto confidence = outputs<DepthImagePtr>(bus, params.names(), "/depth/confidence");
+  const auto origins = bus.template output<ProductOrigins>("depth/origins");
   return [=] {
     auto stage = std::make_unique<S>(params);
     stage->on_depth = depth;
     stage->on_confidence = confidence;
+    stage->on_origins = origins;
     return stage;
   };
 }

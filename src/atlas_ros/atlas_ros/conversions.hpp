@@ -8,6 +8,7 @@
 #include <atlas_msgs/FrustumArray.h>
 #include <atlas_msgs/ObstacleArray.h>
 #include <atlas_msgs/PointBatches.h>
+#include <atlas_msgs/ProductOrigins.h>
 #include <atlas_msgs/ProjectedDetections.h>
 #include <atlas_msgs/RadarScan.h>
 #include <atlas_msgs/SensorStatus.h>
@@ -89,6 +90,8 @@ atlas_msgs::ProjectedDetections toMsg(const atlas::ProjectedDetections& projecte
 atlas::ProjectedDetections fromMsg(const atlas_msgs::ProjectedDetections& msg);
 atlas_msgs::SensorStatus toMsg(const atlas::SensorStatus& status);
 atlas::SensorStatus fromMsg(const atlas_msgs::SensorStatus& msg);
+atlas_msgs::ProductOrigins toMsg(const atlas::ProductOrigins& product);
+atlas::ProductOrigins fromMsg(const atlas_msgs::ProductOrigins& msg);
 sensor_msgs::Image toMsg(const atlas::DepthImage& depth);  // 32FC1, REP-118
 
 geometry_msgs::Pose toMsg(const atlas::Pose& pose);

@@ -34,6 +34,7 @@ ATLAS_MESSAGE_OF(atlas::Obstacles, atlas_msgs::ObstacleArray);
 ATLAS_MESSAGE_OF(atlas::Frustums, atlas_msgs::FrustumArray);
 ATLAS_MESSAGE_OF(atlas::ProjectedDetections, atlas_msgs::ProjectedDetections);
 ATLAS_MESSAGE_OF(atlas::SensorStatus, atlas_msgs::SensorStatus);
+ATLAS_MESSAGE_OF(atlas::ProductOrigins, atlas_msgs::ProductOrigins);
 #undef ATLAS_MESSAGE_OF
 
 template <>

@@ -77,6 +77,32 @@ atlas::SensorStatus fromMsg(const atlas_msgs::SensorStatus& msg) {
   return status;
 }
 
+atlas_msgs::ProductOrigins toMsg(const atlas::ProductOrigins& product) {
+  atlas_msgs::ProductOrigins msg;
+  msg.header.stamp = toTime(product.stamp);
+  msg.product = product.product;
+  msg.index = product.index;
+  for (const atlas::Origin& o : product.origins) {
+    atlas_msgs::Origin origin;
+    origin.topic = o.topic;
+    origin.index_known = o.index.has_value();
+    origin.index = o.index.value_or(0);
+    origin.stamp = toTime(o.stamp);
+    msg.origins.push_back(origin);
+  }
+  return msg;
+}
+
+atlas::ProductOrigins fromMsg(const atlas_msgs::ProductOrigins& msg) {
+  atlas::ProductOrigins product{msg.product, msg.index, fromTime(msg.header.stamp), {}};
+  for (const atlas_msgs::Origin& o : msg.origins) {
+    atlas::Origin origin{o.topic, fromTime(o.stamp), std::nullopt};
+    if (o.index_known) origin.index = o.index;
+    product.origins.push_back(origin);
+  }
+  return product;
+}
+
 sensor_msgs::NavSatFix toMsg(const atlas::Anchor& anchor) {
   sensor_msgs::NavSatFix msg;
   msg.header.stamp = toTime(anchor.stamp);

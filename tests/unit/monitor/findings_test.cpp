@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -33,6 +36,14 @@ TEST(AnomalyTable, EntriesStandInTheOrderOfTheEnumeration) {
   EXPECT_STREQ(infoOf(Anomaly::kHeadingLost).parameter, "heading_lost_s");
   EXPECT_STREQ(infoOf(Anomaly::kOccluded).parameter, "occluded_share");
   EXPECT_STREQ(infoOf(Anomaly::kTargetsFrozen).parameter, "targets_frozen_s");
+}
+
+TEST(AnomalyTable, IsTheOneInTheReadme) {
+  const auto repository = std::filesystem::canonical(__FILE__).parent_path() / "../../..";
+  std::ifstream file(repository / "atlas_loader/README.md");
+  ASSERT_TRUE(file) << repository;
+  const std::string readme((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_NE(readme.find(anomalyTable()), std::string::npos) << "paste what check_sensors --list prints";
 }
 
 TEST(Findings, ScoreIsTheProductOfWhatIsLeft) {

@@ -105,6 +105,7 @@ CameraLidarStage::CameraLidarStage(const CameraLidarParams& params)
       look_ahead_(fromSeconds(params.look_ahead_s)),
       poses_(params.max_pose_gap_s),
       window_(fromSeconds(params.window_s)),
+      sweep_origins_(params.lidars),
       camera_info_(params.cameras.size()),
       intrinsics_(params.cameras.size(), IntrinsicsCache(kMinDepth_m, params.max_depth_m)) {}
 
@@ -121,9 +122,10 @@ void CameraLidarStage::push(const Odometry& odometry) {
 }
 
 void CameraLidarStage::push(std::size_t lidar, const BatchedSweepPtr& batches) {
-  enqueue(lidarInput(lidar), batches->stamp, [this, batches] {
+  const Origin origin = sweep_origins_.next(lidar, batches->stamp);
+  enqueue(lidarInput(lidar), batches->stamp, [this, batches, origin] {
     if (batches->batches.empty()) counters_.skip("sweep", Reason::kNoPoseYet);
-    const CompactSweepPtr sweep = window_.push(batches);
+    const CompactSweepPtr sweep = window_.push(batches, origin);
     if (!sweep) return;
     for (Waiting& waiting : waiting_) {
       if (sweep->stamp <= waiting.detections.stamp + look_ahead_) waiting.sweeps.push_back(sweep);
@@ -223,6 +225,12 @@ void CameraLidarStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map
   if (!group_.empty() && result.stamp > group_.front().stamp + fromSeconds(params_.merge_within_s))
     mergeGroup();
   group_.push_back(result);
+  if (on_origins) {
+    ProductOrigins origins{result.camera + "/frustums", result.image_index, result.stamp, {}};
+    origins.origins.push_back({result.camera + "/detections", result.stamp, result.image_index});
+    addOrigins(origins, waiting.sweeps);
+    on_origins(origins);
+  }
   if (on_frustums) on_frustums(waiting.camera, result);
 }
 

@@ -64,6 +64,8 @@ class CameraLidarStage : public Stage {
   /// Of all cameras, objects that several of them see once (mergeDuplicates): one for each group of images
   /// that are at most merge_within_s after its first.
   std::function<void(const Frustums&)> on_merged;
+  /// Before each answer of a camera: what it is made from. A frustum names its detection itself.
+  std::function<void(const ProductOrigins&)> on_origins;
 
  protected:
   [[nodiscard]] Stamp heldBackFrom() const override;
@@ -94,6 +96,7 @@ class CameraLidarStage : public Stage {
   Duration look_ahead_;
   PoseHistory poses_;
   CameraWindow window_;
+  SweepOrigins sweep_origins_;
   std::vector<std::optional<CameraInfo>> camera_info_;  ///< newest per camera
   std::vector<IntrinsicsCache> intrinsics_;             ///< per camera
   std::deque<Waiting> waiting_;                         ///< in merged order

@@ -3,14 +3,16 @@
 
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace atlas {
 
-CompactSweepPtr compacted(const BatchedSweep& batched) {
+CompactSweepPtr compacted(const BatchedSweep& batched, Origin origin) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   const std::vector<LidarPoint>& points = batched.sweep->points;
   auto result = std::make_shared<CompactSweep>();
   result->stamp = batched.stamp;
+  result->origin = std::move(origin);
   result->batches.resize(batched.batches.size());
   std::vector<std::uint32_t> batch_of(points.size(), kNone);
   forEachPoint(batched, [&](std::size_t i, const Batch& batch) {

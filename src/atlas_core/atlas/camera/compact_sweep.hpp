@@ -21,12 +21,13 @@ struct CompactSweep {
     std::size_t first = 0, end = 0;  ///< of the points
   };
   Stamp stamp = 0;
+  Origin origin;
   std::vector<Batch> batches;  ///< as those of the BatchedSweep
   std::vector<float> x, y, z;  ///< m, lidar frame; finite
 };
 using CompactSweepPtr = std::shared_ptr<const CompactSweep>;
 
 /// The returns of the sweep; points without return are left out.
-[[nodiscard]] CompactSweepPtr compacted(const BatchedSweep& batched);
+[[nodiscard]] CompactSweepPtr compacted(const BatchedSweep& batched, Origin origin = {});
 
 }  // namespace atlas

@@ -68,6 +68,7 @@ DepthStage::DepthStage(const DepthParams& params)
       look_ahead_(fromSeconds(params.look_ahead_s)),
       poses_(params.max_pose_gap_s),
       window_(fromSeconds(params.window_s)),
+      sweep_origins_(params.lidars),
       intrinsics_(names_.size(), IntrinsicsCache(params.min_depth_m, params.max_depth_m)),
       image_count_(params.cameras.size(), 0),
       buffers_(names_.size()) {}
@@ -85,9 +86,10 @@ void DepthStage::push(const Odometry& odometry) {
 }
 
 void DepthStage::push(std::size_t lidar, const BatchedSweepPtr& batches) {
-  enqueue(lidarInput(lidar), batches->stamp, [this, batches] {
+  const Origin origin = sweep_origins_.next(lidar, batches->stamp);
+  enqueue(lidarInput(lidar), batches->stamp, [this, batches, origin] {
     if (batches->batches.empty()) counters_.skip("sweep", Reason::kNoPoseYet);
-    const CompactSweepPtr sweep = window_.push(batches);
+    const CompactSweepPtr sweep = window_.push(batches, origin);
     if (!sweep) return;
     for (Waiting& waiting : waiting_) {
       if (sweep->stamp <= waiting.info.stamp + look_ahead_) waiting.sweeps.push_back(sweep);
@@ -151,6 +153,12 @@ void DepthStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu) 
     }
   }
   counters_.add("depth images");
+  if (on_origins) {
+    ProductOrigins origins{image->camera + "/depth/image", image->image_index, image->stamp, {}};
+    origins.origins.push_back({image->camera + "/camera_info", image->stamp, image->image_index});
+    addOrigins(origins, waiting.sweeps);
+    on_origins(origins);
+  }
   if (on_confidence) on_confidence(waiting.camera, confidence);
   if (on_depth) on_depth(waiting.camera, image);
 }

@@ -61,6 +61,8 @@ class DepthStage : public Stage {
   /// Before each of them: how far to believe it. `depth` holds 1 where a point was measured, 0 where nothing
   /// is known, between where a gap was filled (fillGaps); an empty Mat when the image has no depth.
   std::function<void(std::size_t camera, const DepthImagePtr&)> on_confidence;
+  /// Before each image: what it is made from.
+  std::function<void(const ProductOrigins&)> on_origins;
 
  protected:
   [[nodiscard]] Stamp heldBackFrom() const override;
@@ -89,6 +91,7 @@ class DepthStage : public Stage {
   Duration look_ahead_;
   PoseHistory poses_;
   CameraWindow window_;
+  SweepOrigins sweep_origins_;
   std::vector<IntrinsicsCache> intrinsics_;            ///< per camera
   std::vector<std::uint32_t> image_count_;             ///< per camera: index of its next image
   std::vector<std::unique_ptr<DepthBuffer>> buffers_;  ///< per camera, from its first image on; empty between

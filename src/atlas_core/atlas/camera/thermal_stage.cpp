@@ -2,6 +2,7 @@
 #include "atlas/camera/thermal_stage.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <stdexcept>
 #include <utility>
@@ -57,6 +58,7 @@ ThermalStage::ThermalStage(const ThermalParams& params)
       look_ahead_(fromSeconds(params.look_ahead_s)),
       poses_(params.max_pose_gap_s),
       window_(fromSeconds(params.look_ahead_s + params.recent_s)),
+      sweep_origins_(params.lidars),
       intrinsics_(kMinDepth_m, kMaxDepth_m),
       before_(params.cameras.size()) {}
 
@@ -85,8 +87,9 @@ void ThermalStage::push(std::size_t camera, const Frustums& frustums) {
 }
 
 void ThermalStage::push(std::size_t lidar, const BatchedSweepPtr& batches) {
-  enqueue(lidarInput(lidar), batches->stamp, [this, batches] {
-    const CompactSweepPtr sweep = window_.push(batches);
+  const Origin origin = sweep_origins_.next(lidar, batches->stamp);
+  enqueue(lidarInput(lidar), batches->stamp, [this, batches, origin] {
+    const CompactSweepPtr sweep = window_.push(batches, origin);
     if (!sweep) return;
     for (ThermalFrame& frame : frames_) {
       if (sweep->stamp <= frame.info.stamp + look_ahead_) frame.sweeps.push_back(sweep);
@@ -137,8 +140,13 @@ ThermalStage::Source ThermalStage::takeOldest(const Frustums* after) {
   const bool is_near = last && image.frustums.stamp - last->stamp <= neighbour_;
   FrustumMotionParams motion;
   motion.bridged_confidence = params_.bridged_confidence;
-  Source source{image.camera, image.frustums.stamp,
-                followObjects(is_near ? &*last : nullptr, image.frustums, after, motion)};
+  const std::array<const Frustums*, 3> seen = {is_near ? &*last : nullptr, &image.frustums, after};
+  Source source{
+      image.camera, image.frustums.stamp, followObjects(seen[0], image.frustums, after, motion), {}};
+  for (const Frustums* used : seen) {
+    if (used == nullptr) continue;
+    source.origins.push_back({params_.cameras[image.camera] + "/frustums", used->stamp, used->image_index});
+  }
   last = std::move(image.frustums);
   pending_.pop_front();
   return source;
@@ -221,7 +229,19 @@ void ThermalStage::answer(const ThermalFrame& frame, const Outcome<Pose>& T_map_
       }
     }
   }
+  tellOrigins(frame);
   if (on_projected) on_projected(result);
+}
+
+void ThermalStage::tellOrigins(const ThermalFrame& frame) const {
+  if (!on_origins) return;
+  const std::string& camera = params_.thermal_camera;
+  ProductOrigins product{camera + "/projected_detections", frame.index, frame.info.stamp, {}};
+  product.origins.push_back({camera + "/camera_info", frame.info.stamp, frame.index});
+  for (const Source& source : frame.chosen_by)
+    product.origins.insert(product.origins.end(), source.origins.begin(), source.origins.end());
+  if (!frame.chosen_by.empty()) addOrigins(product, frame.sweeps);
+  on_origins(product);
 }
 
 std::vector<ThermalStage::Label> ThermalStage::project(const ThermalFrame& frame, const Source& source,

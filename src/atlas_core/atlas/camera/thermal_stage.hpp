@@ -56,6 +56,8 @@ class ThermalStage : public Stage {
 
   /// One per thermal frame, in order.
   std::function<void(const ProjectedDetections&)> on_projected;
+  /// Before each of them: what it is made from.
+  std::function<void(const ProductOrigins&)> on_origins;
 
  protected:
   [[nodiscard]] Stamp heldBackFrom() const override;
@@ -68,6 +70,7 @@ class ThermalStage : public Stage {
     std::size_t camera;
     Stamp stamp;
     std::vector<MovingFrustum> objects;
+    std::vector<Origin> origins;  ///< the frustums of this image, and of its neighbours in time
   };
   struct Pending {
     std::size_t camera;
@@ -99,6 +102,7 @@ class ThermalStage : public Stage {
   [[nodiscard]] bool oldestIsSettled() const;
   void answerReady();
   void answer(const ThermalFrame& frame, const Outcome<Pose>& T_map_imu);
+  void tellOrigins(const ThermalFrame& frame) const;
   std::vector<Label> project(const ThermalFrame& frame, const Source& source, const CameraModel& model,
                              const Pose& T_thermal_map);
   void dropHidden(std::vector<Label>& labels, const ThermalFrame& frame, const Projector& projector,
@@ -109,6 +113,7 @@ class ThermalStage : public Stage {
   Rig rig_;
   PoseHistory poses_;
   CameraWindow window_;
+  SweepOrigins sweep_origins_;
   IntrinsicsCache intrinsics_;
   std::uint32_t next_index_ = 0;
   std::deque<ThermalFrame> frames_;  ///< not answered yet

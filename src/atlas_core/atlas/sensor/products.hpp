@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -126,6 +127,20 @@ struct DepthImage {
   cv::Mat depth;  ///< CV_32FC1
 };
 using DepthImagePtr = std::shared_ptr<const DepthImage>;
+
+/// A message that something was made from.
+struct Origin {
+  std::string topic;
+  Stamp stamp = 0;
+  std::optional<std::uint32_t> index;  ///< 0-based number of the message in its topic, where that is known
+};
+/// What one product was made from; how its origins came about is told by theirs.
+struct ProductOrigins {
+  std::string product;      ///< its topic
+  std::uint32_t index = 0;  ///< 0-based number in its topic
+  Stamp stamp = 0;
+  std::vector<Origin> origins;
+};
 
 /// Something that a sensor does and a sound one does not.
 struct SensorAnomaly {
