@@ -90,6 +90,8 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   params.aggregate = configuration.section<atlas::AggregateParams>("aggregate");
   params.obstacles = configuration.section<atlas::ObstacleParams>("obstacles");
   params.camera_lidar = configuration.section<atlas::CameraLidarParams>("camera_lidar");
+  params.objects = configuration.section<atlas::ObjectParams>("objects");
+  params.local_map = configuration.section<atlas::LocalMapParams>("local_map");
   params.thermal = configuration.section<atlas::ThermalParams>("thermal");
   params.depth = configuration.section<atlas::DepthParams>("depth");
   addPipeline(graph, params);
@@ -102,6 +104,7 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   writers.overlay = configuration.section<atlas::OverlayWriterParams>("overlay_writer");
   configuration.section<atlas::TrajectoryWriterParams>("trajectory_writer");
   configuration.section<atlas::ObstacleWriterParams>("obstacle_writer");
+  configuration.section<atlas::ObjectWriterParams>("object_writer");
   configuration.section<atlas::StatusWriterParams>("status_writer");
   configuration.section<atlas::TraceWriterParams>("trace_writer");
   configuration.rejectUnread();

@@ -11,6 +11,8 @@ void readParams(Reader&, TrajectoryWriterParams&) {}
 template <class Reader>
 void readParams(Reader&, ObstacleWriterParams&) {}
 template <class Reader>
+void readParams(Reader&, ObjectWriterParams&) {}
+template <class Reader>
 void readParams(Reader&, StatusWriterParams&) {}
 template <class Reader>
 void readParams(Reader&, TraceWriterParams&) {}

@@ -33,6 +33,7 @@ void addWriters(LocalGraph& graph, const WriterParams& params, const std::string
   graph.add([&](Bus& bus) { return bindFrustumWriter(bus, params.frustum, out); });
   graph.add([&](Bus& bus) { return bindThermalWriter(bus, params.thermal, out); });
   graph.add([&](Bus& bus) { return bindObstacleWriter(bus, out); });
+  graph.add([&](Bus& bus) { return bindObjectWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindStatusWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindTraceWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindOverlayWriter(bus, params.overlay, out); });
@@ -154,6 +155,18 @@ void ThermalWriterStage::onEnd() {
   writer_.close();
   counters_.add("frames", writer_.frames());
   for (const auto& [what, count] : writer_.dropped()) counters_.add("skipped " + what, count);
+}
+
+ObjectWriterStage::ObjectWriterStage(const std::filesystem::path& out)
+    : Stage("object_writer", {"objects"}), writer_(out) {}
+ObjectWriterStage::~ObjectWriterStage() {
+  closeQuietly("object_writer", [this] { writer_.close(); });
+}
+void ObjectWriterStage::push(const ObjectsPtr& objects) {
+  enqueue(0, objects->stamp, [this, objects] {
+    writer_.write(*objects);
+    counters_.add("objects", objects->objects.size());
+  });
 }
 
 ObstacleWriterStage::ObstacleWriterStage(const std::filesystem::path& out)

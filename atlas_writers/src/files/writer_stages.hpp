@@ -14,6 +14,7 @@
 #include "files/depth_writer.hpp"
 #include "files/frustum_writer.hpp"
 #include "files/map_writer.hpp"
+#include "files/object_writer.hpp"
 #include "files/obstacle_writer.hpp"
 #include "files/overlay_writer.hpp"
 #include "files/status_writer.hpp"
@@ -25,6 +26,7 @@ namespace atlas {
 
 struct TrajectoryWriterParams {};
 struct ObstacleWriterParams {};
+struct ObjectWriterParams {};
 struct CloudWriterParams {
   std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
 };
@@ -147,6 +149,17 @@ class ObstacleWriterStage : public Stage {
   ObstacleWriter writer_;
 };
 
+class ObjectWriterStage : public Stage {
+ public:
+  explicit ObjectWriterStage(const std::filesystem::path& out);
+  ~ObjectWriterStage() override;
+  void push(const ObjectsPtr& objects);
+
+ private:
+  void onEnd() override { writer_.close(); }
+  ObjectWriter writer_;
+};
+
 template <class Bus>
 StageFactory bindTrajectoryWriter(Bus& bus, const std::string& out) {
   using S = TrajectoryWriterStage;
@@ -202,6 +215,12 @@ StageFactory bindStatusWriter(Bus& bus, const std::string& out) {
   using S = StatusWriterStage;
   bus.template input<S, SensorStatus>(0, "sensor_status",
                                       [](S& s, const SensorStatus& status) { s.push(status); });
+  return [=] { return std::make_unique<S>(out); };
+}
+template <class Bus>
+StageFactory bindObjectWriter(Bus& bus, const std::string& out) {
+  using S = ObjectWriterStage;
+  bus.template input<S, ObjectsPtr>(0, "objects", [](S& s, const ObjectsPtr& o) { s.push(o); });
   return [=] { return std::make_unique<S>(out); };
 }
 template <class Bus>

@@ -10,6 +10,8 @@ void addPipeline(LocalGraph& graph, const PipelineParams& params) {
   graph.add([&](LocalGraph::Bus& bus) { return bindAggregate(bus, params.aggregate); });
   graph.add([&](LocalGraph::Bus& bus) { return bindObstacles(bus, params.obstacles); });
   graph.add([&](LocalGraph::Bus& bus) { return bindCameraLidar(bus, params.camera_lidar); });
+  graph.add([&](LocalGraph::Bus& bus) { return bindObjects(bus, params.objects); });
+  graph.add([&](LocalGraph::Bus& bus) { return bindLocalMap(bus, params.local_map); });
   graph.add([&](LocalGraph::Bus& bus) { return bindThermal(bus, params.thermal); });
   graph.beginThread();  // depth images cost as much as all before them
   graph.add([&](LocalGraph::Bus& bus) { return bindDepth(bus, params.depth); });

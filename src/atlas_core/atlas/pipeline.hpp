@@ -10,6 +10,9 @@
 //   <lidar>/batches, odometry            -> obstacles    -> obstacles
 //   <camera>/detections, batches         -> camera_lidar -> <camera>/frustums,
 //                                                           frustums (all cameras, merged)
+//   obstacles, frustums, <radar>/scan,
+//   batches, odometry                    -> objects      -> objects
+//   objects, cloud, frustums, odometry   -> local_map    -> local_map
 //   <camera>/frustums, IR camera_info,
 //   batches                              -> thermal      -> camera_ir/projected_detections
 //   batches, <camera>/camera_info        -> depth        -> <camera>/depth/image
@@ -28,6 +31,8 @@
 #include "atlas/camera/camera_lidar_stage.hpp"
 #include "atlas/camera/depth_stage.hpp"
 #include "atlas/camera/thermal_stage.hpp"
+#include "atlas/fusion/local_map.hpp"
+#include "atlas/fusion/object_stage.hpp"
 #include "atlas/lidar/aggregate_stage.hpp"
 #include "atlas/lidar/deskew_stage.hpp"
 #include "atlas/lidar/obstacle_stage.hpp"
@@ -43,6 +48,8 @@ struct PipelineParams {
   AggregateParams aggregate;
   ObstacleParams obstacles;
   CameraLidarParams camera_lidar;
+  ObjectParams objects;
+  LocalMapParams local_map;
   ThermalParams thermal;
   DepthParams depth;
 };
@@ -72,8 +79,8 @@ StageFactory bindMonitor(Bus& bus, const MonitorParams& params) {
   using S = MonitorStage;
   validate(params);
   const MonitorStage::Inputs first(params);
-  bus.template input<S, StaticTransforms>(
-      S::kTfStatic, "tf_static", [](S& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
+  bus.template input<S, StaticTransforms>(S::kTfStatic, "tf_static",
+                                          [](S& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
   bus.template input<S, ImuSample>(S::kImu, "imu/data", [](S& s, const ImuSample& imu) { s.push(imu); });
   bus.template input<S, MagneticSample>(S::kMagnetic, "imu/mag",
                                         [](S& s, const MagneticSample& field) { s.push(field); });
@@ -197,6 +204,41 @@ StageFactory bindCameraLidar(Bus& bus, const CameraLidarParams& params) {
     stage->on_frustums = frustums;
     stage->on_merged = merged;
     stage->on_origins = origins;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindObjects(Bus& bus, const ObjectParams& params) {
+  using S = ObjectStage;
+  validate(params);
+  const std::size_t obstacles = S::kFirstLidar + params.lidars.size();
+  rigAndOdometry<S>(bus);
+  inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
+  bus.template input<S, Obstacles>(obstacles, "obstacles", [](S& s, const Obstacles& o) { s.push(o); });
+  if (params.use_frustums)
+    bus.template input<S, Frustums>(obstacles + 1, "frustums", [](S& s, const Frustums& f) { s.push(f); });
+  inputs<S, RadarScan>(bus, obstacles + (params.use_frustums ? 2 : 1), params.radars, "/scan");
+  const auto objects = bus.template output<ObjectsPtr>("objects");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_objects = objects;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindLocalMap(Bus& bus, const LocalMapParams& params) {
+  using S = LocalMapStage;
+  validate(params);
+  bus.template input<S, Odometry>(S::kOdometry, "odometry", [](S& s, const Odometry& o) { s.push(o); });
+  bus.template input<S, ObjectsPtr>(S::kObjects, "objects", [](S& s, const ObjectsPtr& o) { s.push(o); });
+  bus.template input<S, MapCloudPtr>(S::kCloud, "cloud", [](S& s, const MapCloudPtr& c) { s.push(c); });
+  bus.template input<S, Frustums>(S::kFrustums, "frustums", [](S& s, const Frustums& f) { s.push(f); });
+  const auto map = bus.template output<LocalMapView>("local_map");
+  return [=] {
+    auto stage = std::make_unique<S>(params);
+    stage->on_map = map;
     return stage;
   };
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "atlas_ros/conversions.hpp"
+#include "atlas_ros/object_conversions.hpp"
 #include "atlas_ros/point_cloud.hpp"
 
 namespace atlas_ros {
@@ -84,6 +85,17 @@ struct MessageOf<atlas::MapCloudPtr> {
     cloud->points = (*sweep)->points;
     return atlas::MapCloudPtr(cloud);
   }
+};
+template <>
+struct MessageOf<atlas::ObjectsPtr> {
+  using Message = atlas_msgs::ObjectArray;
+  static Message to(const atlas::ObjectsPtr& value) { return toMsg(*value); }
+  static atlas::Outcome<atlas::ObjectsPtr> from(const Message& message) { return fromMsg(message); }
+};
+template <>
+struct MessageOf<atlas::LocalMapView> {
+  using Message = atlas_msgs::LocalMap;
+  static Message to(const atlas::LocalMapView& value) { return toMsg(value); }
 };
 template <>
 struct MessageOf<atlas::VideoPacketPtr> {

@@ -122,6 +122,37 @@ void readParams(Reader& reader, atlas::CameraLidarParams& p) {
 }
 
 template <class Reader>
+void readParams(Reader& reader, atlas::ObjectParams& p) {
+  reader.read("lidars", p.lidars);
+  reader.read("radars", p.radars);
+  reader.read("use_frustums", p.use_frustums);
+  reader.read("max_range_m", p.max_range_m);
+  reader.read("classes", p.tracker.classes.classes);
+  reader.readOptional("confusion", p.tracker.classes.confusion);
+  reader.readOptional("detections_independent", p.tracker.classes.detections_independent);
+  reader.readOptional("none_prior", p.tracker.classes.none_prior);
+  reader.read("confirm_existence", p.tracker.confirm_existence);
+  reader.read("tell_existence", p.tracker.tell_existence);
+  reader.read("drop_existence", p.tracker.drop_existence);
+  reader.read("drop_position_sigma_m", p.tracker.drop_position_sigma_m);
+  reader.read("static_probability", p.tracker.static_probability);
+  reader.read("gate_sigmas", p.tracker.gate_sigmas);
+  reader.readOptional("robust_sigmas", p.tracker.robust_sigmas);
+  reader.read("history", p.tracker.history);
+  reader.readOptional("max_tracks", p.tracker.max_tracks);
+  reader.readOptional("max_odometry_age_s", p.max_odometry_age_s);
+  reader.readOptional("max_silence_s", p.max_silence_s);
+}
+
+template <class Reader>
+void readParams(Reader& reader, atlas::LocalMapParams& p) {
+  reader.read("history_s", p.history_s);
+  reader.read("radius_m", p.radius_m);
+  reader.read("period_s", p.period_s);
+  reader.read("frustum_window_s", p.frustum_window_s);
+}
+
+template <class Reader>
 void readParams(Reader& reader, atlas::ThermalParams& p) {
   reader.read("thermal_camera", p.thermal_camera);
   reader.read("cameras", p.cameras);

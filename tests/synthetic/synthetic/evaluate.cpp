@@ -59,6 +59,7 @@ Evaluation evaluateRun(const RunFolders& folders) {
       evaluateTrajectory(folders, "smoothed", T_truth_run, evaluation);
     evaluatePoints(folders, T_truth_run, evaluation);
     evaluateObstacles(folders, T_truth_run, evaluation);
+    evaluateObjects(folders, T_truth_run, evaluation);
   } else {
     evaluation.skip("trajectory and points: no trajectory/anchor.json");
   }

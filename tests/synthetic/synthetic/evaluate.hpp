@@ -41,6 +41,8 @@ void evaluateTrajectory(const RunFolders& folders, const std::string& name, cons
 void evaluatePoints(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation);
 /// Boxes of out/obstacles against what the returns belong to: found objects, wrong boxes, overlap.
 void evaluateObstacles(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation);
+/// Objects of out/objects: MOTA, HOTA, IDF1, identity switches, velocities, classes, static or dynamic.
+void evaluateObjects(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation);
 void evaluateDepth(const RunFolders& folders, Evaluation& evaluation);
 /// Distances of out/frustums against the nearest visible point of the true object that the detection shows.
 void evaluateFrustums(const RunFolders& folders, Evaluation& evaluation);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,8 @@ struct Object {
 };
 struct Objects {
   Stamp stamp = 0;
-  std::vector<Object> objects;  ///< by id
+  std::optional<Pose> T_map_imu;  ///< of the vehicle, when it was known
+  std::vector<Object> objects;    ///< by id
 };
 using ObjectsPtr = std::shared_ptr<const Objects>;
 

@@ -11,6 +11,8 @@ constexpr double kFront_m = 0.5;     ///< the front that lidar points through a 
 constexpr double kBoxCentre = 0.25;  ///< of the width: boxes are cut by borders and by what is before them
 constexpr double kLeastAcross_m = 0.2;
 constexpr double kHeightGap_m = 1.0;  ///< between the middle of a detection and that of a track
+constexpr double kWider = 0.4;        ///< log of how much wider than a track a detection of it may be
+constexpr double kTallerFree_m = 0.4, kTaller_m = 0.4;  ///< a track rises above a detection of it
 constexpr double kRadarRange_m = 0.35;
 constexpr double kRadarAcross_m = 0.5;
 constexpr double kRadarVelocity_mps = 0.3;
@@ -64,7 +66,8 @@ FrustumMeasurement::FrustumMeasurement(const Frustum& frustum) : frustum_(frustu
   confidence = frustum.detection.confidence;
   index = frustum.detection_index;
   const auto& corners = frustum.corners;  // near TL, TR, BR, BL, then far: rays of the four from one centre
-  width_m = (corners[1] - corners[0]).norm();
+  width_m_ = (corners[1] - corners[0]).norm();
+  top_m_ = 0.5 * (corners[0].z() + corners[1].z());
   const Eigen::Vector3d near = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   const Eigen::Vector3d far = 0.25 * (corners[4] + corners[5] + corners[6] + corners[7]);
   const Eigen::Vector2d ahead = (far - near).head<2>();
@@ -72,8 +75,9 @@ FrustumMeasurement::FrustumMeasurement(const Frustum& frustum) : frustum_(frustu
 }
 
 std::optional<Reason> FrustumMeasurement::defect() const {
-  const bool finite = frustum_.position.allFinite() && direction_.allFinite() && std::isfinite(width_m) &&
-                      std::isfinite(frustum_.depth_sigma_m) && std::isfinite(confidence);
+  const bool finite = frustum_.position.allFinite() && direction_.allFinite() &&
+                      std::isfinite(width_m_ + top_m_) && std::isfinite(frustum_.depth_sigma_m) &&
+                      std::isfinite(confidence);
   return finite ? std::nullopt : std::make_optional(Reason::kNotFinite);
 }
 
@@ -87,15 +91,19 @@ Rows FrustumMeasurement::rows(const TrackShape& track, double depth_sigma_m, dou
   return surfaceRows(track, direction_, frustum_.position.head<2>(), depth_sigma_m, across_sigma_m);
 }
 Rows FrustumMeasurement::anchor(const TrackShape& track) const {
-  return rows(track, std::hypot(frustum_.depth_sigma_m, kFront_m), kLeastAcross_m + kBoxCentre * width_m);
+  return rows(track, std::hypot(frustum_.depth_sigma_m, kFront_m), kLeastAcross_m + kBoxCentre * width_m_);
 }
 
 double FrustumMeasurement::mismatch(const TrackShape& track) const {
   const double dz =
       (frustum_.position.z() - track.middle_z_m.value) / (kHeightGap_m + 0.3 * track.height_m.value);
   // a box narrower than what it should show is cut; a wider one shows something else
-  const double wide = std::max(0.0, width_m / std::max(widthAcross(track, direction_), 0.5) - 1.5);
-  return 0.5 * (dz * dz + wide * wide);
+  const double known_m = widthAcross(track, direction_) + std::sqrt(track.state.covariance(kLength, kLength));
+  const double wide = std::max(0.0, std::log(width_m_ / std::max(known_m, 0.3)) / kWider);
+  const bool cut = frustum_.detection.y_min < 1.0;  // by the image's upper border
+  const double top = track.middle_z_m.value + 0.5 * track.height_m.value;
+  const double tall = cut ? 0.0 : std::max(0.0, top - top_m_ - kTallerFree_m) / kTaller_m;
+  return 0.5 * (dz * dz + wide * wide + tall * tall);
 }
 
 Measured FrustumMeasurement::measured(const TrackShape& track) const {

@@ -24,7 +24,7 @@ class FrustumMeasurement : public Measurement {
   [[nodiscard]] Rows rows(const TrackShape& track, double depth_sigma_m, double across_sigma_m) const;
   Frustum frustum_;
   Eigen::Vector2d direction_ = Eigen::Vector2d::UnitX();  ///< from the camera, in the plane
-  double width_m = 0.0;                                   ///< of the box at the near plane
+  double width_m_ = 0.0, top_m_ = 0.0;                    ///< of the box at the near plane; top in map
 };
 
 /// A radar target; the velocity is that of the target in map along the line of sight, away from the radar.

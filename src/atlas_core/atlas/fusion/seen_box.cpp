@@ -8,15 +8,17 @@
 namespace atlas {
 namespace {
 
-constexpr double kSide_m = 0.08;      ///< of a side that faces the sensor: range noise, uneven surface ...
+constexpr double kSide_m = 0.1;       ///< of a side that faces the sensor: range noise, uneven surface ...
 constexpr double kSidePer_m = 0.003;  ///< ... and a share of the range, for the beams' distance
 constexpr double kEnd_m = 0.2;        ///< of an end of a side: the last beam that hits it
 constexpr double kEndPer_m = 0.006;   ///< gap between beams on a surface seen head-on
 constexpr double kBound_m = 0.3;      ///< of an end that is only known not to be nearer
 constexpr double kFacing_m = 0.1;     ///< the sensor is so far outside of a side that it sees it
-constexpr double kLeastSine = 0.15;   ///< a side seen flatter than this shows no far end
-constexpr double kHasYaw_m = 1.2;     ///< outlines of smaller things have no direction
-constexpr double kLongAxis_m = 2.4;   ///< a longer side is the length of a vehicle
+constexpr double kThin_m = 0.35, kLine_m = 1.2,
+                 kLineEnd_m = 0.6;   ///< a line is a piece of a wall: it ends anywhere
+constexpr double kLeastSine = 0.15;  ///< a side seen flatter than this shows no far end
+constexpr double kHasYaw_m = 1.2;    ///< outlines of smaller things have no direction
+constexpr double kLongAxis_m = 2.4;  ///< a longer side is the length of a vehicle
 constexpr double kYaw_rad = 0.06;
 constexpr double kFastest_mps = 8.0;
 constexpr double kAnchor_m = 0.25;  ///< clusters differ from sweep to sweep
@@ -67,6 +69,7 @@ void SeenBox::addSides(const TrackShape& track, const Fitted& box, bool lengthwi
   const double sine =
       std::max(beside, 0.0) / std::max(range, 1e-6);  // of the angle at which the other side is seen
   const double end_sigma = kEnd_m + kEndPer_m * range / std::max(sine, kLeastSine);
+  const bool line = 2.0 * other_half < kThin_m && 2.0 * half > kLine_m;
   for (const double sign : {1.0, -1.0}) {
     const double z = axis.dot(center) + sign * half;
     if (sign * ahead > half + kFacing_m) {  // faces the sensor
@@ -80,7 +83,7 @@ void SeenBox::addSides(const TrackShape& track, const Fitted& box, bool lengthwi
     const double expected =
         axis.dot(track.position()) + sign * 0.5 * (lengthwise ? track.length() : track.width());
     if (shown) {
-      rows.add(along(axis, z, side, 0.5 * sign, end_sigma));
+      rows.add(along(axis, z, side, 0.5 * sign, line ? kLineEnd_m + end_sigma : end_sigma));
     } else if (sign * (z - expected) > 0.0) {
       rows.add(along(axis, z, side, 0.5 * sign, kBound_m));
     }

@@ -10,8 +10,10 @@ namespace atlas {
 namespace {
 
 constexpr double kLasting_s = 60.0,
-                 kUnseenLasting_s = 10.0;  ///< an object leaves, or was none, after so long
-constexpr double kUnseen_s = 0.35;         ///< without a measurement
+                 kUnseenLasting_s = 3.0;  ///< an object leaves, or was none, after so long
+constexpr double kBodies = 1.5;           ///< bodies differ so much more than their usual spread
+constexpr double kLeastFit = 1e-5;        ///< of a body to a class
+constexpr double kUnseen_s = 0.35;        ///< without a measurement
 constexpr double kMostCertain = 0.999;
 constexpr double kClimb_mps2_sqrt_s = 0.3, kClimb_mps = 0.3;  ///< slopes of roads
 constexpr double kHeightWalk_m_sqrt_s = 0.05;
@@ -34,10 +36,31 @@ Track::Track(std::uint32_t id, Stamp stamp, const TrackBirth& birth,
       z_covariance_(Eigen::Vector2d(birth.shape.middle_z_m.variance, kClimb_mps * kClimb_mps).asDiagonal()),
       height_m_(birth.shape.height_m),
       belief_(classes_->prior()),
+      class_probability_(belief_),
+      likeliest_(classes_->classes()),
       sized_(classes_->classes(), 0),
       existence_(birth.existence) {}
 
-const ClassPhysics& Track::physics() const { return classes_->physics(ClassModel::likeliest(belief_)); }
+void Track::weighClasses() {
+  class_probability_ = belief_;
+  const TrackState& state = filter_.estimate();
+  double sum = belief_.back();
+  for (std::size_t i = 0; i < classes_->classes(); ++i) {
+    const ClassPhysics& body = classes_->physics(i);
+    double odd_sq = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double variance = k < 2 ? state.covariance(kLength + k, kLength + k) : height_m_.variance;
+      const double known = k < 2 ? state.mean(kLength + k) : height_m_.value;
+      const double sigma = std::sqrt(variance + kBodies * kBodies * body.size_sigma(k) * body.size_sigma(k));
+      const double odd = std::max(0.0, std::abs(known - body.size(k)) / sigma - 1.0);
+      odd_sq += odd * odd;
+    }
+    class_probability_[i] *= std::max(std::exp(-0.5 * odd_sq), kLeastFit);
+    sum += class_probability_[i];
+  }
+  for (double& p : class_probability_) p /= sum;
+  likeliest_ = ClassModel::likeliest(class_probability_);
+}
 
 void Track::predict(Stamp stamp) {
   const double dt_s = toSeconds(stamp - stamp_);
@@ -85,6 +108,7 @@ void Track::update(const Measurement& measurement, double robust_sigmas) {
     height_m_.variance *= 1.0 - K;
   }
   followCourse();
+  weighClasses();
   applySize();
   seen_ = stamp_;
 }
@@ -118,10 +142,9 @@ Object Track::report(double static_from) {
   const TrackState& state = filter_.estimate();
   Object object;
   object.id = id_;
-  const std::size_t likeliest = ClassModel::likeliest(belief_);
-  object.class_id = likeliest < classes_->classes() ? classes_->coco(likeliest) : -1;
-  object.class_probability = belief_[likeliest];
-  object.class_probabilities = belief_;
+  object.class_id = likeliest_ < classes_->classes() ? classes_->coco(likeliest_) : -1;
+  object.class_probability = class_probability_[likeliest_];
+  object.class_probabilities = class_probability_;
   object.existence = existence_;
   object.position = {state.mean(kPx), state.mean(kPy), z_.x()};
   object.yaw_rad = yaw_rad_;

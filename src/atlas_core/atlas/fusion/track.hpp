@@ -43,7 +43,8 @@ class Track {
   void remember(std::size_t most);
 
  private:
-  [[nodiscard]] const ClassPhysics& physics() const;
+  [[nodiscard]] const ClassPhysics& physics() const { return classes_->physics(likeliest_); }
+  void weighClasses();
   void readYaw(const YawReading& reading);
   void followCourse();
   void applySize();
@@ -59,7 +60,9 @@ class Track {
   Eigen::Vector2d z_;        ///< middle and its speed
   Eigen::Matrix2d z_covariance_;
   Reading height_m_;
-  std::vector<double> belief_;
+  std::vector<double> belief_;             ///< by detections
+  std::vector<double> class_probability_;  ///< by detections and size
+  std::size_t likeliest_;
   std::vector<char> sized_;  ///< classes whose usual size was taken into account
   double existence_;
   bool confirmed_ = false;

@@ -12,6 +12,7 @@ namespace atlas {
 namespace {
 
 constexpr double kLeastProbability = 1e-6;  ///< a model that is ruled out can come back
+constexpr double kStands_mps = 0.5;         ///< what is slower stands: the seen part of a body moves as much
 constexpr double kSmallest_m = 0.02;        ///< of a length or width
 
 double normal(std::vector<double>& weights) {
@@ -131,7 +132,16 @@ void TrackFilter::update(const Rows& rows, double robust_sigmas) {
 
 double TrackFilter::standingProbability() const {
   double sum = 0.0;
-  for (std::size_t i = 0; i < states_.size(); ++i) sum += (*models_)[i].stands ? probability_[i] : 0.0;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if ((*models_)[i].stands) {
+      sum += probability_[i];
+      continue;
+    }
+    const TrackState& state = states_[i];
+    const double speed = state.mean.segment<2>(kVx).norm();
+    const double sigma = std::sqrt(0.5 * (state.covariance(kVx, kVx) + state.covariance(kVy, kVy)));
+    sum += probability_[i] * 0.5 * std::erfc((speed - kStands_mps) / (std::sqrt(2.0) * sigma));
+  }
   return sum;
 }
 

@@ -89,6 +89,7 @@ class TrackFilter {
   /// Mixture of all models.
   [[nodiscard]] const TrackState& estimate() const { return estimate_; }
   [[nodiscard]] const std::vector<double>& probabilities() const { return probability_; }
+  /// That it stands, or moves slower than 0.5 m/s.
   [[nodiscard]] double standingProbability() const;
   /// Length and width change places: what was taken for the front is a side.
   void swapLengthAndWidth();

@@ -82,8 +82,8 @@ void Track::followCourse() {
 
 void Track::applySize() {
   const TrackVector mean = filter_.estimate().mean;
-  const std::size_t likeliest = ClassModel::likeliest(belief_);
-  const bool known = likeliest < classes_->classes() && belief_[likeliest] > kClassSure;
+  const std::size_t likeliest = likeliest_;
+  const bool known = likeliest < classes_->classes() && class_probability_[likeliest] > kClassSure;
   const ClassPhysics& body = physics();
   if (body.steers && mean(kWidth) > kWider * mean(kLength) && mean(kWidth) > kWide_m) swapAxes();
   if (!known || sized_[likeliest] != 0) return;
