@@ -198,10 +198,10 @@ TEST(DepthBuffer, isEmptyAfterAnImage) {
   const DepthBuffer::Images first = buffer.takeFilled({500.0, 1.0, 10.0, 0.12});
   EXPECT_FLOAT_EQ(first.depth.at<float>(3, 5), 7.0F);
   EXPECT_LT(first.confidence.at<float>(3, 5), 1.0F);
-  buffer.add({3.0F, 8.0F, 9.0F}, false);
+  buffer.add({4.0F, 3.0F, 9.0F});  // where the first image had something nearer
   const DepthBuffer::Images second = buffer.takeFilled({500.0, 1.0, 10.0, 0.12});
   EXPECT_EQ(countIf(second.depth, [](float z) { return !std::isnan(z); }), 1);
-  EXPECT_EQ(second.depth.at<float>(8, 3), 9.0F);
+  EXPECT_EQ(second.depth.at<float>(3, 4), 9.0F);
   EXPECT_EQ(countIf(second.confidence, [](float sure) { return sure != 0.0F; }), 1);
   EXPECT_FLOAT_EQ(first.depth.at<float>(3, 5), 7.0F) << "the first image is still its own";
 }
