@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "atlas/output/depth_png.hpp"
-#include "atlas/output/png.hpp"
 #include "files/output_file.hpp"
 
 namespace atlas {

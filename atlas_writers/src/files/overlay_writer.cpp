@@ -2,11 +2,11 @@
 #include "overlay_writer.hpp"
 
 #include <cstdio>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "atlas/output/overlay.hpp"
-#include "atlas/output/png.hpp"
 #include "output_file.hpp"
 
 namespace atlas {
@@ -92,7 +92,8 @@ void OverlayWriterStage::write(std::size_t camera, const Picture& picture) {
                    Reason::kBadLayout);  // the image has another size than its camera_info
   }
   if (picture.frustums) canvas = drawFrustums(canvas, *picture.frustums);
-  const std::vector<std::uint8_t> png = encodePng(canvas);
+  std::vector<unsigned char> png;
+  cv::imencode(".png", canvas, png, {cv::IMWRITE_PNG_COMPRESSION, 1});
   char name[32];
   std::snprintf(name, sizeof name, "%06u.png", picture.index);
   const std::filesystem::path folder = out_ / "overlay" / params_.cameras[camera];

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "atlas/output/coco_names.hpp"
+#include "atlas/output/depth_png.hpp"
 #include "atlas/output/detections_csv.hpp"
 #include "atlas/output/fixed_text.hpp"
 #include "atlas/output/label_check.hpp"
-#include "atlas/output/png.hpp"
 #include "atlas/output/radiometric_png.hpp"
 #include "atlas/output/yolo.hpp"
 

@@ -5,9 +5,7 @@
 
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
-#include <vector>
-
-#include "atlas/output/png.hpp"
+#include <stdexcept>
 
 namespace atlas {
 namespace {
@@ -57,6 +55,8 @@ TEST(DepthPng, previewIsBrightNearAndBlackWhereUnknown) {
   for (int i = 0; i < 5; ++i)
     EXPECT_EQ(grey.at<std::uint8_t>(0, i), expected[static_cast<std::size_t>(i)]) << i;
 }
+
+TEST(DepthPng, anEmptyImageIsRefused) { EXPECT_THROW(encodePng(cv::Mat()), std::invalid_argument); }
 
 }  // namespace
 }  // namespace atlas
