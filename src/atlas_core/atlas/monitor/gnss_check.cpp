@@ -39,7 +39,8 @@ void GnssCheck::add(const GnssFix& fix, Findings& findings) {
 /// Against the motion over the last second: constant velocity, and what braking and noise may do to it.
 void GnssCheck::measureJump(const GnssFix& fix, Findings& findings) {
   const Eigen::Vector3d p_map = map_->toMap(fix.position);
-  if (!places_.empty() && places_.back().p_map == p_map) return;  // the receiver is slower than its stream
+  // The receiver is slower than its stream, holds its position or is frozen: nothing is learned.
+  if (!places_.empty() && places_.back().p_map == p_map) return;
   if (!places_.empty() && fix.stamp - places_.back().stamp > kLongestStep) places_.clear();
   if (!places_.empty()) {
     const Place &first = places_.front(), &last = places_.back();

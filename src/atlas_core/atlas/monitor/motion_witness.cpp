@@ -8,9 +8,7 @@ constexpr double kStanding_mps = 0.15, kMoving_mps = 0.5;
 }  // namespace
 
 void MotionWitness::add(Stamp stamp, const Eigen::Vector3d& p_map) {
-  const Eigen::Vector2d place = p_map.head<2>();
-  if (!places_.empty() && place == places_.back().p_map) return;  // held or frozen: it tells nothing
-  places_.push_back({stamp, place});
+  places_.push_back({stamp, p_map.head<2>()});
   while (places_.size() > 2 && places_[1].stamp <= stamp - kSpan) places_.pop_front();
 }
 

@@ -13,6 +13,7 @@ namespace atlas {
 
 class MotionWitness {
  public:
+  /// A new position; one that is repeated to the last digit is none.
   void add(Stamp stamp, const Eigen::Vector3d& p_map);
   /// Both false when nobody knows.
   [[nodiscard]] bool standing(Stamp stamp) const;
