@@ -8,7 +8,7 @@
 namespace atlas {
 
 TraceWriterStage::TraceWriterStage(const std::filesystem::path& out)
-    : Stage("trace_writer", {"camera_lidar/origins", "thermal/origins", "depth/origins"}),
+    : Stage("trace_writer", {"camera_lidar/origins", "thermal/origins", "depth/origins", "objects"}),
       file_(std::make_unique<OutputFile>(out / "trace" / "origins.csv")) {
   file_->write(originsCsvHeader());
 }
@@ -22,10 +22,25 @@ TraceWriterStage::~TraceWriterStage() {
 }
 
 void TraceWriterStage::push(std::size_t input, const ProductOrigins& product) {
-  enqueue(input, product.stamp, [this, product] {
-    file_->write(originsCsvRow(product));
-    counters_.add("products");
+  enqueue(input, product.stamp, [this, product] { write(product); });
+}
+
+void TraceWriterStage::push(const ObjectsPtr& objects) {
+  const std::uint32_t update = updates_++;
+  enqueue(kObjects, objects->stamp, [this, objects, update] {
+    for (const Object& object : objects->objects) {
+      if (object.sources.empty()) continue;
+      ProductOrigins product{"objects/" + std::to_string(object.id), update, objects->stamp, {}};
+      for (const ObjectSource& source : object.sources)
+        product.origins.push_back({source.input, source.stamp, {}, source.index});
+      write(product);
+    }
   });
+}
+
+void TraceWriterStage::write(const ProductOrigins& product) {
+  file_->write(originsCsvRow(product));
+  counters_.add("products");
 }
 
 void TraceWriterStage::onEnd() {

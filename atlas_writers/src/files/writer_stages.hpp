@@ -225,7 +225,9 @@ StageFactory bindObjectWriter(Bus& bus, const std::string& out) {
 }
 template <class Bus>
 StageFactory bindTraceWriter(Bus& bus, const std::string& out) {
-  inputs<TraceWriterStage, ProductOrigins>(bus, 0, {"camera_lidar", "thermal", "depth"}, "/origins");
+  using S = TraceWriterStage;
+  inputs<S, ProductOrigins>(bus, 0, {"camera_lidar", "thermal", "depth"}, "/origins");
+  bus.template input<S, ObjectsPtr>(S::kObjects, "objects", [](S& s, const ObjectsPtr& o) { s.push(o); });
   return [=] { return std::make_unique<TraceWriterStage>(out); };
 }
 template <class Bus>

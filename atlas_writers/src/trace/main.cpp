@@ -3,6 +3,7 @@
 //   depth CAMERA N              N-th depth image of a camera
 //   thermal N                   labels of the N-th thermal frame
 //   frustum CAMERA FRAME [DETECTION]
+//   object ID [--at STAMP_NS]   its last update, or the last one at or before a stamp
 // Exit status 0: printed, 1: the run has no such product, 2: wrong arguments or unreadable.
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -46,14 +47,17 @@ class TraceFile {
     });
     return found;
   }
-  /// `product` may be the end of the name, for the one camera that has it.
-  [[nodiscard]] std::optional<Origin> root(const std::string& product, std::uint32_t index) const {
+  /// The last one that fits. `product` may be the end of the name, for the one camera that has it; without
+  /// an index any one at or before `latest`.
+  [[nodiscard]] std::optional<Origin> root(const std::string& product, std::optional<std::uint32_t> index,
+                                           atlas::Stamp latest) const {
     std::optional<Origin> result;
     forEach([&](const ProductOrigins& row) {
       const bool ends =
           row.product.size() >= product.size() &&
           row.product.compare(row.product.size() - product.size(), product.size(), product) == 0;
-      if (ends && row.index == index) result = Origin{row.product, row.stamp, row.index};
+      if (ends && row.index == index.value_or(row.index) && row.stamp <= latest)
+        result = Origin{row.product, row.stamp, row.index, {}};
     });
     return result;
   }
@@ -69,6 +73,7 @@ int main(int argc, char** argv) {
   std::string out, camera;
   std::uint32_t index = 0;
   std::optional<std::uint32_t> detection;
+  atlas::Stamp latest = atlas::kEndOfTime;
   app.add_option("OUT", out, "output folder of a run")->required()->check(CLI::ExistingDirectory);
   app.require_subcommand(1);
   auto* depth = app.add_subcommand("depth", "a depth image");
@@ -80,6 +85,9 @@ int main(int argc, char** argv) {
   frustum->add_option("CAMERA", camera)->required();
   frustum->add_option("FRAME", index, "number of the image in its stream")->required();
   frustum->add_option("DETECTION", detection, "index of the detection in the image");
+  auto* object = app.add_subcommand("object", "an object of the local map");
+  object->add_option("ID", index)->required();
+  object->add_option("--at", latest, "stamp in ns: its last update at or before");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -90,7 +98,12 @@ int main(int argc, char** argv) {
     std::string product = "/projected_detections";
     if (depth->parsed()) product = camera + "/depth/image";
     if (frustum->parsed()) product = camera + "/frustums";
-    const auto root = file.root(product, index);
+    std::optional<std::uint32_t> number = index;
+    if (object->parsed()) {
+      product = "objects/" + std::to_string(index);
+      number.reset();
+    }
+    const auto root = file.root(product, number, latest);
     if (!root) {
       std::fprintf(stderr, "atlas_trace: %s has no %s #%u\n", out.c_str(), product.c_str(), index);
       return 1;

@@ -87,6 +87,8 @@ atlas_msgs::ProductOrigins toMsg(const atlas::ProductOrigins& product) {
     origin.topic = o.topic;
     origin.index_known = o.index.has_value();
     origin.index = o.index.value_or(0);
+    origin.item_known = o.item.has_value();
+    origin.item = o.item.value_or(0);
     origin.stamp = toTime(o.stamp);
     msg.origins.push_back(origin);
   }
@@ -96,8 +98,9 @@ atlas_msgs::ProductOrigins toMsg(const atlas::ProductOrigins& product) {
 atlas::ProductOrigins fromMsg(const atlas_msgs::ProductOrigins& msg) {
   atlas::ProductOrigins product{msg.product, msg.index, fromTime(msg.header.stamp), {}};
   for (const atlas_msgs::Origin& o : msg.origins) {
-    atlas::Origin origin{o.topic, fromTime(o.stamp), std::nullopt};
+    atlas::Origin origin{o.topic, fromTime(o.stamp), {}, {}};
     if (o.index_known) origin.index = o.index;
+    if (o.item_known) origin.item = o.item;
     product.origins.push_back(origin);
   }
   return product;

@@ -57,7 +57,7 @@ const ProductOrigins kLabels{
     "camera_ir/projected_detections",
     7,
     at(2),
-    {{"camera_ir/camera_info", at(2), 7U}, {"camera_left_front/frustums", at(1.99), 20U}}};
+    {{"camera_ir/camera_info", at(2), 7U, {}}, {"camera_left_front/frustums", at(1.99), 20U, {}}}};
 
 TEST(OriginsCsv, RowsGoBothWays) {
   EXPECT_EQ(originsCsvHeader(), "product,index,stamp_ns,origins\n");
@@ -69,14 +69,18 @@ TEST(OriginsCsv, RowsGoBothWays) {
   ASSERT_TRUE(back);
   EXPECT_EQ(originsCsvRow(*back), row);
   EXPECT_EQ(back->origins[1].stamp, at(1.99));
-  const ProductOrigins without{"odometry", 1, 5, {{"imu/data", 5, std::nullopt}}};
+  const ProductOrigins without{"odometry", 1, 5, {{"imu/data", 5, {}, {}}}};
   EXPECT_EQ(originsCsvRow(without), "odometry,1,5,imu/data#@0\n");
   EXPECT_FALSE(parseOriginsRow("odometry,1,5,imu/data#@0")->origins[0].index);
   EXPECT_TRUE(parseOriginsRow("empty,1,5,")->origins.empty());
+  const ProductOrigins object{"objects/17", 40, at(3), {{"obstacles", at(2.9), {}, 4U}}};
+  EXPECT_EQ(originsCsvRow(object), "objects/17,40,1568186748000000000,obstacles#/4@-100000000\n");
+  EXPECT_EQ(parseOriginsRow(originsCsvRow(object))->origins[0].item, 4U);
 }
 
 TEST(OriginsCsv, BrokenRowsAreNoRows) {
-  for (const char* row : {"", "a", "a,b,5,", "a,1,x,", "a,1,5,b", "a,1,5,b#x@0", "a,1,5,b#1@", "a,1,5,#1@0"})
+  for (const char* row :
+       {"", "a", "a,b,5,", "a,1,x,", "a,1,5,b", "a,1,5,b#x@0", "a,1,5,b#1@", "a,1,5,#1@0", "a,1,5,b#1/x@0"})
     EXPECT_FALSE(parseOriginsRow(row)) << row;
 }
 
@@ -86,8 +90,8 @@ TEST(TraceTree, GoesDownToTheRawData) {
       {"camera_left_front/frustums",
        20,
        at(1.99),
-       {{"camera_left_front/detections", at(1.99), 20U}, {"lidar_left/batches", at(1.9), 19U}}},
-      {"camera_left_front/frustums", 21, at(2.09), {{"lidar_left/batches", at(2.0), 20U}}}};
+       {{"camera_left_front/detections", at(1.99), 20U, {}}, {"lidar_left/batches", at(1.9), 19U, {}}}},
+      {"camera_left_front/frustums", 21, at(2.09), {{"lidar_left/batches", at(2.0), 20U, {}}}}};
   int searches = 0;
   const FindOrigins find = [&](const std::vector<Origin>& wanted) {
     ++searches;
@@ -99,7 +103,7 @@ TEST(TraceTree, GoesDownToTheRawData) {
     }
     return found;
   };
-  EXPECT_EQ(traceTree({"camera_ir/projected_detections", at(2), 7U}, find),
+  EXPECT_EQ(traceTree({"camera_ir/projected_detections", at(2), 7U, {}}, find),
             "camera_ir/projected_detections #7 @ 1568186747000000000\n"
             "  camera_ir/camera_info #7 @ 1568186747000000000\n"
             "  camera_left_front/frustums #20 @ 1568186746990000000\n"
@@ -108,14 +112,27 @@ TEST(TraceTree, GoesDownToTheRawData) {
             "    lidar_left/batches #19 @ 1568186746900000000\n"
             "      lidar_left/points #19 @ 1568186746900000000\n"
             "      odometry @ 1568186746900000000\n"
-            "        imu/data @ 1568186746900000000\n"
+            "        imu/data around @ 1568186746900000000\n"
             "        imu/data, gnss/fix, gnss/heading before @ 1568186746900000000\n");
   EXPECT_EQ(searches, 2) << "once for each level that has to be looked up";
 }
 
+TEST(TraceTree, AnObjectGoesDownToItsObstacle) {
+  const FindOrigins find = [](const std::vector<Origin>& wanted) {
+    std::vector<ProductOrigins> found;
+    if (wanted[0].topic == "objects/17") found.push_back({"objects/17", 40, 7, {{"obstacles", 7, {}, 4U}}});
+    return found;
+  };
+  EXPECT_EQ(traceTree({"objects/17", 7, 40U, {}}, find),
+            "objects/17 #40 @ 7\n"
+            "  obstacles item 4 @ 7\n"
+            "    batches of the first lidar @ 7\n"
+            "    newest batches of the other lidars @ 7\n");
+}
+
 TEST(TraceTree, SaysWhatTheRunDidNotWrite) {
   const FindOrigins nothing = [](const std::vector<Origin>&) { return std::vector<ProductOrigins>{}; };
-  EXPECT_EQ(traceTree({"grid", 5, 3U}, nothing), "grid #3 @ 5  (origins not written by this run)\n");
+  EXPECT_EQ(traceTree({"grid", 5, 3U, {}}, nothing), "grid #3 @ 5  (origins not written by this run)\n");
 }
 
 }  // namespace

@@ -196,6 +196,12 @@ void CameraLidarStage::mergeGroup() {
   std::size_t seen = 0;
   for (const Frustums& image : group_) seen += image.frustums.size();
   counters_.add("frustums of the same object by another camera", seen - merged.frustums.size());
+  if (on_origins) {
+    ProductOrigins origins{"frustums", merged_count_++, merged.stamp, {}};
+    for (const Frustums& image : group_)
+      origins.origins.push_back({image.camera + "/frustums", image.stamp, image.image_index, {}});
+    on_origins(origins);
+  }
   group_.clear();
   if (on_merged) on_merged(merged);
 }
@@ -227,7 +233,7 @@ void CameraLidarStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map
   group_.push_back(result);
   if (on_origins) {
     ProductOrigins origins{result.camera + "/frustums", result.image_index, result.stamp, {}};
-    origins.origins.push_back({result.camera + "/detections", result.stamp, result.image_index});
+    origins.origins.push_back({result.camera + "/detections", result.stamp, result.image_index, {}});
     addOrigins(origins, waiting.sweeps);
     on_origins(origins);
   }

@@ -101,6 +101,7 @@ class CameraLidarStage : public Stage {
   std::vector<IntrinsicsCache> intrinsics_;             ///< per camera
   std::deque<Waiting> waiting_;                         ///< in merged order
   std::vector<Frustums> group_;                         ///< answered, not merged yet
+  std::uint32_t merged_count_ = 0;
 };
 
 }  // namespace atlas

@@ -16,7 +16,7 @@ namespace atlas {
 class SweepOrigins {
  public:
   explicit SweepOrigins(const std::vector<std::string>& lidars) {
-    for (const std::string& lidar : lidars) next_.push_back({lidar + "/batches", 0, 0});
+    for (const std::string& lidar : lidars) next_.push_back({lidar + "/batches", 0, 0, {}});
   }
   /// Of the next sweep of a lidar; call for every one, in order of arrival.
   Origin next(std::size_t lidar, Stamp stamp) {
@@ -32,7 +32,7 @@ class SweepOrigins {
 /// Adds those of the sweeps, and of the pose at the stamp of the product.
 inline void addOrigins(ProductOrigins& product, const std::vector<CompactSweepPtr>& sweeps) {
   for (const CompactSweepPtr& sweep : sweeps) product.origins.push_back(sweep->origin);
-  product.origins.push_back({"odometry", product.stamp, std::nullopt});
+  product.origins.push_back({"odometry", product.stamp, {}, {}});
 }
 
 class CameraWindow {

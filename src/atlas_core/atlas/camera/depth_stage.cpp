@@ -155,7 +155,9 @@ void DepthStage::answer(const Waiting& waiting, const Outcome<Pose>& T_map_imu) 
   counters_.add("depth images");
   if (on_origins) {
     ProductOrigins origins{image->camera + "/depth/image", image->image_index, image->stamp, {}};
-    origins.origins.push_back({image->camera + "/camera_info", image->stamp, image->image_index});
+    const std::size_t trigger = waiting.camera < params_.cameras.size() ? waiting.camera : 0;
+    origins.origins.push_back(
+        {params_.cameras[trigger] + "/camera_info", image->stamp, image->image_index, {}});
     addOrigins(origins, waiting.sweeps);
     on_origins(origins);
   }

@@ -145,7 +145,8 @@ ThermalStage::Source ThermalStage::takeOldest(const Frustums* after) {
       image.camera, image.frustums.stamp, followObjects(seen[0], image.frustums, after, motion), {}};
   for (const Frustums* used : seen) {
     if (used == nullptr) continue;
-    source.origins.push_back({params_.cameras[image.camera] + "/frustums", used->stamp, used->image_index});
+    source.origins.push_back(
+        {params_.cameras[image.camera] + "/frustums", used->stamp, used->image_index, {}});
   }
   last = std::move(image.frustums);
   pending_.pop_front();
@@ -237,7 +238,7 @@ void ThermalStage::tellOrigins(const ThermalFrame& frame) const {
   if (!on_origins) return;
   const std::string& camera = params_.thermal_camera;
   ProductOrigins product{camera + "/projected_detections", frame.index, frame.info.stamp, {}};
-  product.origins.push_back({camera + "/camera_info", frame.info.stamp, frame.index});
+  product.origins.push_back({camera + "/camera_info", frame.info.stamp, frame.index, {}});
   for (const Source& source : frame.chosen_by)
     product.origins.insert(product.origins.end(), source.origins.begin(), source.origins.end());
   if (!frame.chosen_by.empty()) addOrigins(product, frame.sweeps);

@@ -21,17 +21,20 @@ bool read(std::string_view text, Number& number) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+/// A number that may be missing; false for what is no number.
+bool readOptional(std::string_view text, std::optional<std::uint32_t>& number) {
+  return text.empty() || read(text, number.emplace());
+}
+
 std::optional<Origin> originOf(std::string_view text, Stamp product) {
   Origin origin;
   origin.topic = take(text, '#');
-  const std::string_view index = take(text, '@');
+  std::string_view item = take(text, '@');
+  const std::string_view index = take(item, '/');
   Duration offset = 0;
-  std::uint32_t number = 0;
-  if (!index.empty()) {
-    if (!read(index, number)) return std::nullopt;
-    origin.index = number;
-  }
-  if (origin.topic.empty() || !read(text, offset)) return std::nullopt;
+  if (origin.topic.empty() || !readOptional(index, origin.index) || !readOptional(item, origin.item) ||
+      !read(text, offset))
+    return std::nullopt;
   origin.stamp = product + offset;
   return origin;
 }
@@ -45,7 +48,8 @@ std::string originsCsvRow(const ProductOrigins& product) {
       product.product + "," + std::to_string(product.index) + "," + std::to_string(product.stamp) + ",";
   const char* between = "";
   for (const Origin& origin : product.origins) {
-    text += between + origin.topic + "#" + (origin.index ? std::to_string(*origin.index) : "") + "@" +
+    text += between + origin.topic + "#" + (origin.index ? std::to_string(*origin.index) : "") +
+            (origin.item ? "/" + std::to_string(*origin.item) : "") + "@" +
             std::to_string(origin.stamp - product.stamp);
     between = ";";
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where a product comes from, one row each: product,index,stamp_ns,origins - origins as
-// topic#index@offset_ns with ; between them, the offset from the stamp of the product; # without a number
-// where the index is not known.
+// topic#index/item@offset_ns with ; between them, the offset from the stamp of the product; without a number
+// where the index is not known, and without /item where the whole message counts.
 #pragma once
 
 #include <optional>

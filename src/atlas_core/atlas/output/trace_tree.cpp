@@ -22,16 +22,20 @@ std::string beside(const std::string& topic, const std::string& suffix) {
 /// What is so in every run; nullopt for what has to be looked up.
 std::optional<std::vector<Origin>> knownOrigins(const Origin& of) {
   if (endsWith(of.topic, "/batches"))
-    return std::vector<Origin>{{beside(of.topic, "/points"), of.stamp, of.index},
-                               {"odometry", of.stamp, std::nullopt}};
+    return std::vector<Origin>{{beside(of.topic, "/points"), of.stamp, of.index, {}},
+                               {"odometry", of.stamp, {}, {}}};
   if (endsWith(of.topic, "/detections"))
-    return std::vector<Origin>{{beside(of.topic, "/image"), of.stamp, of.index}};
+    return std::vector<Origin>{{beside(of.topic, "/image"), of.stamp, of.index, {}}};
+  if (of.topic == "obstacles")
+    return std::vector<Origin>{{"batches of the first lidar", of.stamp, {}, {}},
+                               {"newest batches of the other lidars", of.stamp, {}, {}}};
   if (of.topic == "odometry")
-    return std::vector<Origin>{{"imu/data", of.stamp, std::nullopt},
-                               {"imu/data, gnss/fix, gnss/heading before", of.stamp, std::nullopt}};
+    return std::vector<Origin>{{"imu/data around", of.stamp, {}, {}},
+                               {"imu/data, gnss/fix, gnss/heading before", of.stamp, {}, {}}};
   const bool raw = endsWith(of.topic, "/points") || endsWith(of.topic, "/image") ||
-                   endsWith(of.topic, "/camera_info") || endsWith(of.topic, "/scan") ||
-                   of.topic.rfind("imu/", 0) == 0 || of.topic.rfind("gnss/", 0) == 0;
+                   endsWith(of.topic, "/camera_info") || of.topic.find("batches of") != std::string::npos ||
+                   endsWith(of.topic, "/scan") || of.topic.rfind("imu/", 0) == 0 ||
+                   of.topic.rfind("gnss/", 0) == 0;
   if (raw) return std::vector<Origin>{};
   return std::nullopt;
 }
@@ -85,6 +89,7 @@ class Levels {
 void print(const Origin& origin, const Levels& levels, int depth, std::string& text) {
   text += std::string(2 * static_cast<std::size_t>(depth), ' ') + origin.topic;
   if (origin.index) text += " #" + std::to_string(*origin.index);
+  if (origin.item) text += " item " + std::to_string(*origin.item);
   text += " @ " + std::to_string(origin.stamp);
   const auto* origins = levels.of(origin);
   text += origins == nullptr ? "  (origins not written by this run)\n" : "\n";

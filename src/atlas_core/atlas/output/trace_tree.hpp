@@ -3,8 +3,8 @@
 // up; what holds for every run is known here:
 //   <lidar>/batches     the sweep of the same stamp and index in <lidar>/points, placed by odometry
 //   <camera>/detections made from the picture of the same stamp and index
-//   odometry            imu/data of the same stamp, and by the filter's memory all imu/data and gnss before
-//   it
+//   obstacles           batches of the first lidar with the same stamp, the newest ones of the others
+//   odometry            interpolated between the imu/data around; by the filter's memory all data before
 #pragma once
 
 #include <functional>
@@ -15,8 +15,8 @@
 
 namespace atlas {
 
-/// Finds the rows of several products at once: for each of `wanted` the one with its topic and stamp, or
-/// index when that is known; products without a row are not in the answer.
+/// Finds the rows of several products at once: for each of `wanted` the one with its topic and stamp;
+/// products without a row are not in the answer.
 using FindOrigins = std::function<std::vector<ProductOrigins>(const std::vector<Origin>& wanted)>;
 
 /// Text of the tree, one origin a line, indented by depth. `root` need not have a row: it is told then.

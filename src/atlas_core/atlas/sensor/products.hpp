@@ -133,6 +133,7 @@ struct Origin {
   std::string topic;
   Stamp stamp = 0;
   std::optional<std::uint32_t> index;  ///< 0-based number of the message in its topic, where that is known
+  std::optional<std::uint32_t> item;   ///< index of the one thing in the message, where it was one
 };
 /// What one product was made from; how its origins came about is told by theirs.
 struct ProductOrigins {
