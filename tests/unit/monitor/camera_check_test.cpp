@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "atlas/monitor/picture_statistics.hpp"
 #include "watched.hpp"
 
 namespace atlas {

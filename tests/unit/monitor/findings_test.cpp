@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "atlas/monitor/anomaly.hpp"
 #include "watched.hpp"
 
 namespace atlas {

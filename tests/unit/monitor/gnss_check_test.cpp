@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "atlas/monitor/motion_witness.hpp"
 #include "watched.hpp"
 
 namespace atlas {

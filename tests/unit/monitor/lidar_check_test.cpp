@@ -7,6 +7,7 @@
 
 #include "atlas/monitor/lidar_pair_check.hpp"
 #include "atlas/monitor/radar_check.hpp"
+#include "atlas/monitor/scan_summary.hpp"
 #include "watched.hpp"
 
 namespace atlas {
