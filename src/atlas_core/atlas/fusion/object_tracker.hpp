@@ -19,7 +19,7 @@ struct TrackerParams {
   double confirm_existence = 0.85;     ///< probability from which an object is told of ...
   double tell_existence = 0.5;         ///< ... and below which it is not, until it is seen again
   double drop_existence = 0.05;        ///< below this a track ends
-  double drop_position_sigma_m = 4.0;  ///< nobody knows where a track is that is less certain
+  double drop_position_sigma_m = 8.0;  ///< nobody knows where a track is that is less certain
   double static_probability = 0.5;     ///< from which an object is static
   double gate_sigmas = 4.0;            ///< of a measurement that may belong to a track
   double robust_sigmas = 2.5;          ///< measurements farther off weigh less; 0 = all weigh the same

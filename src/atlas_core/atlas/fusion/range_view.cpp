@@ -90,11 +90,11 @@ RangeView::Window RangeView::windowOf(const Eigen::Vector2d& center, double yaw_
 
 RangeView::Census RangeView::census(const TrackShape& object) const {
   Census census;
-  if (empty()) return census;
+  if (empty() || !object.state.mean.allFinite() || !std::isfinite(object.yaw_rad)) return census;
   const double half = 0.5 * object.height_m.value;
   const Window window = windowOf(object.position(), object.yaw_rad, object.length(), object.width(),
                                  object.middle_z_m.value - half + kFoot_m, object.middle_z_m.value + half);
-  if (!(window.nearest_m > kLeastDistance_m) || !std::isfinite(window.farthest_m)) return census;
+  if (!(window.nearest_m > kLeastDistance_m)) return census;
   const int first = static_cast<int>(std::ceil((window.middle_rad + window.right_rad) / kColumn_rad));
   const int last = static_cast<int>(std::floor((window.middle_rad + window.left_rad) / kColumn_rad)) - 1;
   const int middle = static_cast<int>(std::floor(window.middle_rad / kColumn_rad));

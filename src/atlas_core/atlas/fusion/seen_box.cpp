@@ -16,6 +16,7 @@ constexpr double kBound_m = 0.3;      ///< of an end that is only known not to b
 constexpr double kFacing_m = 0.1;     ///< the sensor is so far outside of a side that it sees it
 constexpr double kThin_m = 0.35, kLine_m = 1.2,
                  kLineEnd_m = 0.6;   ///< a line is a piece of a wall: it ends anywhere
+constexpr double kLateral = 0.5;     ///< sine of the angle to the sight from which an end lies left or right
 constexpr double kLeastSine = 0.15;  ///< a side seen flatter than this shows no far end
 constexpr double kHasYaw_m = 1.2;    ///< outlines of smaller things have no direction
 constexpr double kLongAxis_m = 2.4;  ///< a longer side is the length of a vehicle
@@ -72,14 +73,14 @@ void SeenBox::addSides(const TrackShape& track, const Fitted& box, bool lengthwi
   const bool line = 2.0 * other_half < kThin_m && 2.0 * half > kLine_m;
   for (const double sign : {1.0, -1.0}) {
     const double z = axis.dot(center) + sign * half;
-    if (sign * ahead > half + kFacing_m) {  // faces the sensor
+    const Eigen::Vector2d sight = -to_sensor, end = sign * axis;  // left of the sight: counter-clockwise
+    const double turn = (sight.x() * end.y() - sight.y() * end.x()) / std::max(range, 1e-6);
+    const bool hidden = std::abs(turn) > kLateral && (turn > 0.0 ? hidden_.left : hidden_.right);
+    if (sign * ahead > half + kFacing_m && !hidden) {
       rows.add(along(axis, z, side, 0.5 * sign, kSide_m + kSidePer_m * range));
       continue;
     }
-    // left of the line of sight: counter-clockwise seen from the sensor
-    const Eigen::Vector2d sight = -to_sensor, end = sign * axis;
-    const bool left = sight.x() * end.y() - sight.y() * end.x() > 0.0;
-    const bool shown = sine > kLeastSine && !(left ? hidden_.left : hidden_.right);
+    const bool shown = sine > kLeastSine && !hidden;
     const double expected =
         axis.dot(track.position()) + sign * 0.5 * (lengthwise ? track.length() : track.width());
     if (shown) {

@@ -71,7 +71,7 @@ using MotionModels = std::vector<MotionModel>;
 /// Which models objects of a class use.
 struct MotionProfile {
   std::vector<double> weights = {0.6, 0.3, 0.1};  ///< of each model in the long run; 0 = not used
-  double switches_per_s = 0.4;                    ///< how often the way to move changes
+  double switches_per_s = 0.12;                   ///< how often the way to move changes
   MotionNoise noise;
 };
 /// Throws std::invalid_argument naming the field and its value.
