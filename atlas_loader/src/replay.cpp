@@ -75,6 +75,37 @@ class Configuration {
   std::set<std::string> read_;
 };
 
+/// Whether --write asks for a product that not every run has.
+bool asksFor(const ReplayOptions& options, const std::string& product) {
+  return std::find(options.write.begin(), options.write.end(), product) != options.write.end();
+}
+
+void refuseUnknownProducts(const ReplayOptions& options) {
+  for (const std::string& product : options.write) {
+    if (product != "deskewed" && product != "lines")
+      throw std::invalid_argument("--write knows deskewed and lines, got '" + product + "'");
+  }
+}
+
+atlas::WriterParams writerParams(Configuration& configuration, const ReplayOptions& options) {
+  atlas::WriterParams writers;
+  writers.cloud = configuration.section<atlas::CloudWriterParams>("cloud_writer");
+  writers.line = configuration.section<atlas::LineWriterParams>("line_writer");
+  writers.map = configuration.section<atlas::MapWriterParams>("map_writer");
+  writers.depth = configuration.section<atlas::DepthWriterParams>("depth_writer");
+  writers.frustum = configuration.section<atlas::FrustumWriterParams>("frustum_writer");
+  writers.thermal = configuration.section<atlas::ThermalWriterParams>("thermal_writer");
+  writers.overlay = configuration.section<atlas::OverlayWriterParams>("overlay_writer");
+  configuration.section<atlas::TrajectoryWriterParams>("trajectory_writer");
+  configuration.section<atlas::ObstacleWriterParams>("obstacle_writer");
+  configuration.section<atlas::ObjectWriterParams>("object_writer");
+  configuration.section<atlas::StatusWriterParams>("status_writer");
+  configuration.section<atlas::TraceWriterParams>("trace_writer");
+  writers.write_deskewed = asksFor(options, "deskewed");
+  writers.write_lines = asksFor(options, "lines");
+  return writers;
+}
+
 /// Adds the stages in order of the data path; the configuration decides all their parameters.
 void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const ReplayOptions& options) {
   using atlas_ros::readParams;
@@ -89,29 +120,16 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   params.deskew = configuration.section<atlas::DeskewParams>("deskew");
   params.aggregate = configuration.section<atlas::AggregateParams>("aggregate");
   params.obstacles = configuration.section<atlas::ObstacleParams>("obstacles");
+  const auto lines = configuration.section<atlas::LineParams>("lines");
+  if (asksFor(options, "lines")) params.lines = lines;
   params.camera_lidar = configuration.section<atlas::CameraLidarParams>("camera_lidar");
   params.objects = configuration.section<atlas::ObjectParams>("objects");
   params.local_map = configuration.section<atlas::LocalMapParams>("local_map");
   params.thermal = configuration.section<atlas::ThermalParams>("thermal");
   params.depth = configuration.section<atlas::DepthParams>("depth");
   addPipeline(graph, params);
-  atlas::WriterParams writers;
-  writers.cloud = configuration.section<atlas::CloudWriterParams>("cloud_writer");
-  writers.map = configuration.section<atlas::MapWriterParams>("map_writer");
-  writers.depth = configuration.section<atlas::DepthWriterParams>("depth_writer");
-  writers.frustum = configuration.section<atlas::FrustumWriterParams>("frustum_writer");
-  writers.thermal = configuration.section<atlas::ThermalWriterParams>("thermal_writer");
-  writers.overlay = configuration.section<atlas::OverlayWriterParams>("overlay_writer");
-  configuration.section<atlas::TrajectoryWriterParams>("trajectory_writer");
-  configuration.section<atlas::ObstacleWriterParams>("obstacle_writer");
-  configuration.section<atlas::ObjectWriterParams>("object_writer");
-  configuration.section<atlas::StatusWriterParams>("status_writer");
-  configuration.section<atlas::TraceWriterParams>("trace_writer");
+  const atlas::WriterParams writers = writerParams(configuration, options);
   configuration.rejectUnread();
-  for (const std::string& extra : options.write) {
-    if (extra != "deskewed") throw std::invalid_argument("--write knows deskewed, got '" + extra + "'");
-    writers.write_deskewed = true;
-  }
   atlas::addWriters(graph, writers, options.out);
 }
 
@@ -119,6 +137,7 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
 
 atlas::RunSummary replay(const ReplayOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
+  refuseUnknownProducts(options);
   const auto reader = openInput(options.input);
   const std::string config =
       !options.config.empty()

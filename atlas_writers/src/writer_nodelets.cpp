@@ -56,6 +56,7 @@ ATLAS_WRITER_NODELET(DepthWriter, atlas::bindDepthWriter(link, params, out));
 ATLAS_WRITER_NODELET(FrustumWriter, atlas::bindFrustumWriter(link, params, out));
 ATLAS_WRITER_NODELET(ThermalWriter, atlas::bindThermalWriter(link, params, out));
 ATLAS_WRITER_NODELET(ObstacleWriter, atlas::bindObstacleWriter(link, out));
+ATLAS_WRITER_NODELET(LineWriter, atlas::bindLineWriter(link, params, out));
 ATLAS_WRITER_NODELET(ObjectWriter, atlas::bindObjectWriter(link, out));
 ATLAS_WRITER_NODELET(StatusWriter, atlas::bindStatusWriter(link, out));
 ATLAS_WRITER_NODELET(TraceWriter, atlas::bindTraceWriter(link, out));
@@ -71,6 +72,7 @@ PLUGINLIB_EXPORT_CLASS(atlas_writers::DepthWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::FrustumWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ThermalWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ObstacleWriterNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(atlas_writers::LineWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ObjectWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::StatusWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::TraceWriterNodelet, nodelet::Nodelet)

@@ -21,6 +21,10 @@ void readParams(Reader& reader, CloudWriterParams& p) {
   reader.read("lidars", p.lidars);
 }
 template <class Reader>
+void readParams(Reader& reader, LineWriterParams& p) {
+  reader.read("lidars", p.lidars);
+}
+template <class Reader>
 void readParams(Reader& reader, MapWriterParams& p) {
   reader.read("lidars", p.lidars);
   reader.read("voxel_m", p.map.voxel_m);

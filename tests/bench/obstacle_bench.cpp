@@ -11,6 +11,7 @@
 
 #include "atlas/lidar/clusters.hpp"
 #include "atlas/lidar/ground.hpp"
+#include "atlas/lidar/line_stage.hpp"
 #include "atlas/lidar/obstacle_stage.hpp"
 
 namespace {
@@ -107,6 +108,19 @@ void groundAndObstacles(benchmark::State& state) {
   state.counters["obstacles"] = static_cast<double>(obstacles);
 }
 BENCHMARK(groundAndObstacles)->Unit(benchmark::kMillisecond);
+
+void linesOfASweep(benchmark::State& state) {
+  const BatchedSweepPtr sweep = window().front();
+  std::size_t lines = 0;
+  for (auto _ : state) {
+    const Lines found = findLines(*sweep, {});
+    lines = found.lines.size();
+    benchmark::DoNotOptimize(found.lines.data());
+  }
+  state.counters["points"] = static_cast<double>(sweep->sweep->points.size());
+  state.counters["lines"] = static_cast<double>(lines);
+}
+BENCHMARK(linesOfASweep)->Unit(benchmark::kMillisecond);
 
 std::vector<LidarPoint> windowInMap() {
   std::vector<LidarPoint> points;

@@ -37,6 +37,7 @@ void addWriters(LocalGraph& graph, const WriterParams& params, const std::string
   graph.add([&](Bus& bus) { return bindStatusWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindTraceWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindOverlayWriter(bus, params.overlay, out); });
+  if (params.write_lines) graph.add([&](Bus& bus) { return bindLineWriter(bus, params.line, out); });
   if (params.write_deskewed) graph.add([&](Bus& bus) { return bindCloudWriter(bus, params.cloud, out); });
 }
 
@@ -178,6 +179,18 @@ void ObstacleWriterStage::push(const Obstacles& obstacles) {
   enqueue(0, obstacles.stamp, [this, obstacles] {
     writer_.write(obstacles);
     counters_.add("obstacles", obstacles.obstacles.size());
+  });
+}
+
+LineWriterStage::LineWriterStage(const LineWriterParams& params, const std::filesystem::path& out)
+    : Stage("line_writer", withSuffix(params.lidars, "/lines")), params_(params), writer_(out) {}
+LineWriterStage::~LineWriterStage() {
+  closeQuietly("line_writer", [this] { writer_.close(); });
+}
+void LineWriterStage::push(std::size_t lidar, const Lines& lines) {
+  enqueue(lidar, lines.stamp, [this, lidar, lines] {
+    writer_.write(params_.lidars[lidar], lines);
+    counters_.add("lines", lines.lines.size());
   });
 }
 

@@ -13,6 +13,7 @@
 #include "files/cloud_writer.hpp"
 #include "files/depth_writer.hpp"
 #include "files/frustum_writer.hpp"
+#include "files/line_writer.hpp"
 #include "files/map_writer.hpp"
 #include "files/object_writer.hpp"
 #include "files/obstacle_writer.hpp"
@@ -28,6 +29,9 @@ struct TrajectoryWriterParams {};
 struct ObstacleWriterParams {};
 struct ObjectWriterParams {};
 struct CloudWriterParams {
+  std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
+};
+struct LineWriterParams {
   std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
 };
 struct MapWriterParams {
@@ -47,8 +51,9 @@ struct ThermalWriterParams {
 };
 
 struct WriterParams {
-  bool write_deskewed = false;
+  bool write_deskewed = false, write_lines = false;
   CloudWriterParams cloud;
+  LineWriterParams line;
   MapWriterParams map;
   DepthWriterParams depth;
   FrustumWriterParams frustum;
@@ -149,6 +154,18 @@ class ObstacleWriterStage : public Stage {
   ObstacleWriter writer_;
 };
 
+class LineWriterStage : public Stage {
+ public:
+  LineWriterStage(const LineWriterParams& params, const std::filesystem::path& out);
+  ~LineWriterStage() override;
+  void push(std::size_t lidar, const Lines& lines);
+
+ private:
+  void onEnd() override { writer_.close(); }
+  LineWriterParams params_;
+  LineWriter writer_;
+};
+
 class ObjectWriterStage : public Stage {
  public:
   explicit ObjectWriterStage(const std::filesystem::path& out);
@@ -209,6 +226,11 @@ StageFactory bindObstacleWriter(Bus& bus, const std::string& out) {
   using S = ObstacleWriterStage;
   bus.template input<S, Obstacles>(0, "obstacles", [](S& s, const Obstacles& o) { s.push(o); });
   return [=] { return std::make_unique<S>(out); };
+}
+template <class Bus>
+StageFactory bindLineWriter(Bus& bus, const LineWriterParams& params, const std::string& out) {
+  inputs<LineWriterStage, Lines>(bus, 0, params.lidars, "/lines");
+  return [=] { return std::make_unique<LineWriterStage>(params, out); };
 }
 template <class Bus>
 StageFactory bindStatusWriter(Bus& bus, const std::string& out) {

@@ -9,6 +9,7 @@ void addPipeline(LocalGraph& graph, const PipelineParams& params) {
   graph.add([&](LocalGraph::Bus& bus) { return bindDeskew(bus, params.deskew); });
   graph.add([&](LocalGraph::Bus& bus) { return bindAggregate(bus, params.aggregate); });
   graph.add([&](LocalGraph::Bus& bus) { return bindObstacles(bus, params.obstacles); });
+  if (params.lines) graph.add([&](LocalGraph::Bus& bus) { return bindLines(bus, *params.lines); });
   graph.add([&](LocalGraph::Bus& bus) { return bindCameraLidar(bus, params.camera_lidar); });
   graph.add([&](LocalGraph::Bus& bus) { return bindObjects(bus, params.objects); });
   graph.add([&](LocalGraph::Bus& bus) { return bindLocalMap(bus, params.local_map); });

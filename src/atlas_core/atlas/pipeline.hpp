@@ -8,6 +8,7 @@
 //   <lidar>/points, odometry             -> deskew       -> <lidar>/batches
 //   <lidar>/batches                      -> aggregate    -> cloud
 //   <lidar>/batches, odometry            -> obstacles    -> obstacles
+//   <lidar>/batches (if asked for)       -> lines        -> <lidar>/lines
 //   <camera>/detections, batches         -> camera_lidar -> <camera>/frustums,
 //                                                           frustums (all cameras, merged)
 //   obstacles, frustums, <radar>/scan,
@@ -23,6 +24,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,7 @@
 #include "atlas/fusion/object_stage.hpp"
 #include "atlas/lidar/aggregate_stage.hpp"
 #include "atlas/lidar/deskew_stage.hpp"
+#include "atlas/lidar/line_stage.hpp"
 #include "atlas/lidar/obstacle_stage.hpp"
 #include "atlas/localization/localization_stage.hpp"
 #include "atlas/monitor/monitor_stage.hpp"
@@ -47,6 +50,7 @@ struct PipelineParams {
   DeskewParams deskew;
   AggregateParams aggregate;
   ObstacleParams obstacles;
+  std::optional<LineParams> lines;  ///< none: no such stage
   CameraLidarParams camera_lidar;
   ObjectParams objects;
   LocalMapParams local_map;
@@ -180,6 +184,17 @@ StageFactory bindObstacles(Bus& bus, const ObstacleParams& params) {
   return [=] {
     auto stage = std::make_unique<S>(params);
     stage->on_obstacles = obstacles;
+    return stage;
+  };
+}
+
+template <class Bus>
+StageFactory bindLines(Bus& bus, const LineParams& params) {
+  validate(params);
+  inputs<LineStage, BatchedSweepPtr>(bus, 0, params.lidars, "/batches");
+  return [params, lines = outputs<Lines>(bus, params.lidars, "/lines")] {
+    auto stage = std::make_unique<LineStage>(params);
+    stage->on_lines = lines;
     return stage;
   };
 }

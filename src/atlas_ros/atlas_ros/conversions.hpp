@@ -6,6 +6,7 @@
 
 #include <atlas_msgs/Detection2dArray.h>
 #include <atlas_msgs/FrustumArray.h>
+#include <atlas_msgs/LineArray.h>
 #include <atlas_msgs/ObstacleArray.h>
 #include <atlas_msgs/PointBatches.h>
 #include <atlas_msgs/ProductOrigins.h>
@@ -29,6 +30,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "atlas/base/outcome.hpp"
+#include "atlas/sensor/lines.hpp"
 #include "atlas/sensor/products.hpp"
 #include "atlas/sensor/sensor.hpp"
 
@@ -84,6 +86,9 @@ atlas_msgs::PointBatches toMsg(const atlas::BatchedSweep& batched);
 atlas::Outcome<atlas::BatchedSweepPtr> fromMsg(const atlas_msgs::PointBatches& msg);
 atlas_msgs::ObstacleArray toMsg(const atlas::Obstacles& obstacles);
 atlas::Obstacles fromMsg(const atlas_msgs::ObstacleArray& msg);
+atlas_msgs::LineArray toMsg(const atlas::Lines& lines);
+/// A line of no known kind answers kBadLayout, one with a number that is not finite kNotFinite.
+atlas::Outcome<atlas::Lines> fromMsg(const atlas_msgs::LineArray& msg);
 atlas_msgs::FrustumArray toMsg(const atlas::Frustums& frustums);
 atlas::Frustums fromMsg(const atlas_msgs::FrustumArray& msg);
 atlas_msgs::ProjectedDetections toMsg(const atlas::ProjectedDetections& projected);

@@ -32,6 +32,7 @@ ATLAS_MESSAGE_OF(atlas::TemperatureRange, atlas_msgs::TemperatureRange);
 ATLAS_MESSAGE_OF(atlas::RadarScan, atlas_msgs::RadarScan);
 ATLAS_MESSAGE_OF(atlas::Odometry, nav_msgs::Odometry);
 ATLAS_MESSAGE_OF(atlas::Obstacles, atlas_msgs::ObstacleArray);
+ATLAS_MESSAGE_OF(atlas::Lines, atlas_msgs::LineArray);
 ATLAS_MESSAGE_OF(atlas::Frustums, atlas_msgs::FrustumArray);
 ATLAS_MESSAGE_OF(atlas::ProjectedDetections, atlas_msgs::ProjectedDetections);
 ATLAS_MESSAGE_OF(atlas::SensorStatus, atlas_msgs::SensorStatus);

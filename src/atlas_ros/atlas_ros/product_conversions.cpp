@@ -191,6 +191,38 @@ atlas::Obstacles fromMsg(const atlas_msgs::ObstacleArray& msg) {
   return obstacles;
 }
 
+atlas_msgs::LineArray toMsg(const atlas::Lines& lines) {
+  atlas_msgs::LineArray msg;
+  msg.header.stamp = toTime(lines.stamp);
+  msg.header.frame_id = kMapFrame;
+  msg.lidar = lines.frame;
+  msg.lines.reserve(lines.lines.size());
+  for (const atlas::Line& line : lines.lines) {
+    atlas_msgs::Line m;
+    m.kind = static_cast<std::uint8_t>(line.kind);
+    m.start = point(line.from);
+    m.end = point(line.to);
+    m.ring = line.ring;
+    m.points = line.points;
+    m.rms = line.rms_m;
+    m.intensity = line.intensity;
+    msg.lines.push_back(m);
+  }
+  return msg;
+}
+atlas::Outcome<atlas::Lines> fromMsg(const atlas_msgs::LineArray& msg) {
+  atlas::Lines lines{fromTime(msg.header.stamp), msg.lidar, {}};
+  lines.lines.reserve(msg.lines.size());
+  for (const atlas_msgs::Line& m : msg.lines) {
+    if (m.kind > atlas_msgs::Line::MARKING) return atlas::Reason::kBadLayout;
+    const Eigen::Vector3d from = fromPoint(m.start), to = fromPoint(m.end);
+    if (!from.allFinite() || !to.allFinite()) return atlas::Reason::kNotFinite;
+    lines.lines.push_back(
+        {static_cast<atlas::LineKind>(m.kind), from, to, m.ring, m.points, m.rms, m.intensity});
+  }
+  return lines;
+}
+
 atlas_msgs::FrustumArray toMsg(const atlas::Frustums& frustums) {
   atlas_msgs::FrustumArray msg;
   msg.header.stamp = toTime(frustums.stamp);

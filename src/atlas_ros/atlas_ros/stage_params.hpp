@@ -106,6 +106,20 @@ void readParams(Reader& reader, atlas::ObstacleParams& p) {
 }
 
 template <class Reader>
+void readParams(Reader& reader, atlas::LineParams& p) {
+  reader.read("lidars", p.lidars);
+  reader.read("max_range_m", p.max_range_m);
+  reader.read("max_gap_m", p.max_gap_m);
+  reader.read("max_gap_per_m", p.max_gap_per_m);
+  reader.read("min_points", p.min_points);
+  reader.read("min_length_m", p.min_length_m);
+  reader.read("max_rms_m", p.max_rms_m);
+  reader.read("ground_tolerance_m", p.ground_tolerance_m);
+  reader.read("marking_contrast", p.marking_contrast);
+  reader.read("max_marking_m", p.max_marking_m);
+}
+
+template <class Reader>
 void readParams(Reader& reader, atlas::CameraLidarParams& p) {
   reader.read("cameras", p.cameras);
   reader.read("lidars", p.lidars);

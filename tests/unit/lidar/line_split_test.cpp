@@ -57,6 +57,19 @@ TEST(LineSplit, CutsAnArcIntoChords) {
   for (const ChainLine& line : lines) EXPECT_LE(line.rms_m, 0.04);
 }
 
+TEST(LineSplit, NoPieceIsWorseThanAllowedAlsoAfterSharingPoints) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise(0.0, 0.03);
+  Chain chain;
+  for (int i = 0; i < 4000; ++i) {  // ten times around: where chords end is chance
+    const double angle = M_PI / 2 * i / 100, radius_m = 10 + noise(random);
+    chain.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle), 0);
+  }
+  const std::vector<ChainLine> lines = splitIntoLines(chain, 10, 0.04);
+  EXPECT_GE(lines.size(), 100U);
+  for (const ChainLine& line : lines) EXPECT_LE(line.rms_m, 0.04);
+}
+
 TEST(LineSplit, FindsNothingInHedgesAndShortChains) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> off(-0.5, 0.5);

@@ -20,6 +20,7 @@ struct Outputs {
   std::vector<BatchedSweepPtr> batches;
   std::vector<MapCloudPtr> clouds;
   std::vector<Obstacles> obstacles;
+  std::vector<Lines> lines;
   std::vector<Frustums> frustums;
   std::vector<ProjectedDetections> projected;
   std::vector<DepthImagePtr> depth;
@@ -50,12 +51,21 @@ PipelineParams params() {
   return p;
 }
 
+PipelineParams paramsWithLines() {
+  PipelineParams p = params();
+  p.lines.emplace();
+  return p;
+}
+
 /// The stages with a listener at each output.
 struct Replay {
   Outputs out;
   LocalGraph graph;
-  Replay() {
-    addPipeline(graph, params());
+  explicit Replay(const PipelineParams& asked = params()) {
+    addPipeline(graph, asked);
+    if (asked.lines) {
+      for (const std::string& lidar : asked.lines->lidars) listen(graph, lidar + "/lines", out.lines);
+    }
     listen(graph, "odometry", out.odometry);
     listen(graph, "anchor", out.anchors);
     listen(graph, "cloud", out.clouds);
@@ -94,6 +104,12 @@ std::string everything(const Replay& run) {
     for (const Obstacle& box : o.obstacles) {
       for (int i = 0; i < 3; ++i) add(bytes, box.center[i]);
       add(bytes, box.yaw_rad);
+    }
+  }
+  for (const Lines& l : run.out.lines) {
+    add(bytes, l.stamp);
+    for (const Line& line : l.lines) {
+      for (int i = 0; i < 3; ++i) add(bytes, line.from[i]), add(bytes, line.to[i]);
     }
   }
   for (const Frustums& f : run.out.frustums) {
@@ -184,15 +200,30 @@ TEST(Pipeline, W17_W22_EveryImageHasTheCalibrationAndFrameOfItsOwnCamera) {
   for (const ProjectedDetections& p : run.out.projected) EXPECT_EQ(p.detections.frame, "camera_ir");
 }
 
+TEST(Pipeline, LinesOnlyWhenAskedFor) {
+  const SmallDrive drive(1.0);
+  Replay without, with(paramsWithLines());
+  replayInOrder(without, drive.events());
+  replayInOrder(with, drive.events());
+  for (const Stage* stage : without.graph.stages()) EXPECT_NE(stage->name(), "lines");
+  ASSERT_EQ(with.out.lines.size(), 20U) << "every sweep is answered once";
+  EXPECT_EQ(with.out.lines.back().lines.size(), 50U)
+      << "one up each column of the wall; the road is too thin";
+  for (const Line& line : with.out.lines.back().lines) {
+    EXPECT_EQ(line.kind, LineKind::kSurface);
+    for (const Eigen::Vector3d& end : {line.from, line.to}) EXPECT_NEAR(end.x(), kWall_m, 0.05);
+  }
+}
+
 // Sources arrive in any order within 100 ms, with watermarks now and then: the same bits from every stage.
 TEST(Pipeline, ArrivalOrderHasNoInfluence) {
   const std::vector<SourceEvent> events = SmallDrive(2.0).events();
-  Replay reference;
+  Replay reference(paramsWithLines());
   replayInOrder(reference, events);
   const std::string expected = everything(reference);
   for (unsigned seed = 1; seed <= 6; ++seed) {
     std::mt19937 random(seed);
-    Replay run;
+    Replay run(paramsWithLines());
     events.front().publish(run.graph);  // tf_static
     for (std::size_t begin = 1; begin < events.size();) {
       std::size_t end = begin;

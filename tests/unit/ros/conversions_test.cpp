@@ -173,4 +173,43 @@ TEST(Frustums, RoundTripIsExact) {
   EXPECT_EQ(back.image_index, 17U);
 }
 
+atlas::Lines someLines() {
+  atlas::Line line;
+  line.kind = atlas::LineKind::kMarking;
+  line.from = {1.0 / 3.0, -2.0, 3.3};
+  line.to = {12345.678901234, 0.1, -0.2};
+  line.ring = 31;
+  line.points = 70000;
+  line.rms_m = 0.1 / 3.0;
+  line.intensity = 60.7;
+  return {kStamp, "lidar_left", {{}, line}};
+}
+
+TEST(Lines, RoundTripIsExact) {
+  const atlas::Lines lines = someLines();
+  const auto back = atlas_ros::fromMsg(atlas_ros::toMsg(lines));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->stamp, kStamp);
+  EXPECT_EQ(back->frame, "lidar_left");
+  ASSERT_EQ(back->lines.size(), 2U);
+  EXPECT_EQ(back->lines[0].kind, atlas::LineKind::kSurface);
+  const atlas::Line &in = lines.lines[1], &out = back->lines[1];
+  EXPECT_EQ(out.kind, in.kind);
+  EXPECT_EQ(out.from, in.from);
+  EXPECT_EQ(out.to, in.to);
+  EXPECT_EQ(out.ring, in.ring);
+  EXPECT_EQ(out.points, in.points);
+  EXPECT_EQ(out.rms_m, in.rms_m);
+  EXPECT_EQ(out.intensity, in.intensity);
+}
+
+TEST(Lines, RefusesUnknownKindsAndNaN) {
+  auto msg = atlas_ros::toMsg(someLines());
+  msg.lines[1].kind = atlas_msgs::Line::MARKING + 1;
+  EXPECT_EQ(atlas_ros::fromMsg(msg).reason(), atlas::Reason::kBadLayout);
+  msg = atlas_ros::toMsg(someLines());
+  msg.lines[0].end.z = kNaN;
+  EXPECT_EQ(atlas_ros::fromMsg(msg).reason(), atlas::Reason::kNotFinite);
+}
+
 }  // namespace

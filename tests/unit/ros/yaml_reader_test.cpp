@@ -45,6 +45,7 @@ TEST(Configurations, EveryStageSectionIsComplete) {
     check("deskew", atlas::DeskewParams());
     check("aggregate", atlas::AggregateParams());
     check("obstacles", atlas::ObstacleParams());
+    check("lines", atlas::LineParams());
     check("camera_lidar", atlas::CameraLidarParams());
     check("thermal", atlas::ThermalParams());
     check("depth", atlas::DepthParams());

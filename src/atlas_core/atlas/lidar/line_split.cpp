@@ -69,14 +69,16 @@ std::size_t grown(const Pieces& pieces, std::size_t first, std::size_t end, std:
 }
 
 /// A grown piece holds some points beyond the corner that it ends at: the border is moved to where both fit
-/// best, by at most half of the shorter piece.
-void moveBorder(const Pieces& pieces, std::size_t& first, std::size_t& border, std::size_t& end) {
+/// best, by at most half of the shorter piece. Neither may become worse than max_rms_m.
+void moveBorder(const Pieces& pieces, std::size_t first, std::size_t& border, std::size_t end,
+                double max_rms_m) {
   const std::size_t reach = std::min(border - first, end - border) / 2;
   std::size_t best = border;
   double best_squares = pieces.squares(first, border) + pieces.squares(border, end);
   for (std::size_t b = border - reach; b <= border + reach; ++b) {
     const double squares = pieces.squares(first, b) + pieces.squares(b, end);
-    if (squares < best_squares) best = b, best_squares = squares;
+    if (squares < best_squares && pieces.rms(first, b) <= max_rms_m && pieces.rms(b, end) <= max_rms_m)
+      best = b, best_squares = squares;
   }
   border = best;
 }
@@ -103,7 +105,7 @@ std::vector<ChainLine> splitIntoLines(const std::vector<Eigen::Vector3d>& chain,
   }
   for (std::size_t i = 1; i < found.size(); ++i) {
     if (found[i - 1].end != found[i].first) continue;
-    moveBorder(pieces, found[i - 1].first, found[i].first, found[i].end);
+    moveBorder(pieces, found[i - 1].first, found[i].first, found[i].end, max_rms_m);
     found[i - 1].end = found[i].first;
   }
   for (const Piece& piece : found) {
