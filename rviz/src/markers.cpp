@@ -100,6 +100,21 @@ MarkerArray obstacleMarkers(const atlas::Obstacles& obstacles) {
   return array;
 }
 
+MarkerArray lineMarkers(const atlas::Lines& found) {
+  const std_msgs::ColorRGBA colors[] = {color(1.0, 0.6, 0.1), color(0.3, 0.5, 1.0), color(1, 1, 1)};
+  const MarkerOrigin origin{found.stamp};
+  MarkerArray array = emptyArray(origin);
+  Marker list = lines(origin, "lines", Marker::LINE_LIST, kLineWidth);
+  for (const atlas::Line& line : found.lines) {
+    if (!line.from.allFinite() || !line.to.allFinite()) continue;
+    list.points.push_back(point(line.from));
+    list.points.push_back(point(line.to));
+    list.colors.insert(list.colors.end(), 2, colors[static_cast<std::size_t>(line.kind)]);
+  }
+  if (!list.points.empty()) array.markers.push_back(list);
+  return array;
+}
+
 MarkerArray frustumMarkers(const atlas::Frustums& frustums) {
   const MarkerOrigin origin{frustums.stamp};
   MarkerArray array = emptyArray(origin);

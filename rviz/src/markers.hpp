@@ -5,6 +5,7 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
+#include "atlas/sensor/lines.hpp"
 #include "atlas/sensor/products.hpp"
 #include "driven_path.hpp"
 
@@ -21,6 +22,8 @@ void validate(const VehicleBox& box);
 /// A box with its size (length x width x height) per obstacle; a box longer than a lorry (a wall, a hedge) as
 /// edges only.
 visualization_msgs::MarkerArray obstacleMarkers(const atlas::Obstacles& obstacles);
+/// Surfaces orange, road blue, road markings white.
+visualization_msgs::MarkerArray lineMarkers(const atlas::Lines& found);
 /// Edges in the colour of the class; class and distance as text.
 visualization_msgs::MarkerArray frustumMarkers(const atlas::Frustums& frustums);
 /// The vehicle's body and its speed.

@@ -26,10 +26,11 @@ constexpr atlas::Duration kVehicleStep =
 
 class MarkersNodelet : public nodelet::Nodelet {
   void onInit() override try {
-    std::vector<std::string> cameras, radars;
+    std::vector<std::string> cameras, radars, lidars;
     atlas_ros::ParamReader params(getPrivateNodeHandle());
     params.read("cameras", cameras);
     params.read("radars", radars);
+    params.readOptional("lidars", lidars);
     params.read("vehicle_length_m", box_.length_m);
     params.read("vehicle_width_m", box_.width_m);
     params.read("vehicle_height_m", box_.height_m);
@@ -44,6 +45,7 @@ class MarkersNodelet : public nodelet::Nodelet {
     for (const std::string& radar : radars) {
       draw<atlas_msgs::RadarScan>(radar + "/scan", "markers/" + radar, radarMarkers);
     }
+    for (const std::string& lidar : lidars) drawLines(lidar);
     anchor_publisher_ = advertise("markers/anchor", true);
     listen<sensor_msgs::NavSatFix>("geographic", [this](const sensor_msgs::NavSatFix& msg) {
       publish(anchor_publisher_, anchorMarkers(atlas_ros::anchorFromMsg(msg)));
@@ -62,6 +64,14 @@ class MarkersNodelet : public nodelet::Nodelet {
     const ros::Publisher publisher = advertise(marker_topic, false);
     listen<Message>(topic, [publisher, markers](const Message& msg) {
       publish(publisher, markers(atlas_ros::fromMsg(msg)));
+    });
+  }
+
+  void drawLines(const std::string& lidar) {
+    const ros::Publisher publisher = advertise("markers/" + lidar + "/lines", false);
+    listen<atlas_msgs::LineArray>(lidar + "/lines", [publisher](const atlas_msgs::LineArray& msg) {
+      const auto lines = atlas_ros::fromMsg(msg);
+      if (lines) publish(publisher, lineMarkers(*lines));
     });
   }
 

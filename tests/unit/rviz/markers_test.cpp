@@ -94,6 +94,23 @@ TEST(Obstacles, AWallIsOnlyEdgesAndAFlatBoxIsSeen) {
   EXPECT_EQ(find(array, "edges")->points.size(), 48U);
 }
 
+TEST(Lines, AColourForEachKindAndNothingForNaN) {
+  atlas::Line wall, marking, broken;
+  wall.to = {1, 2, 3};
+  marking.kind = atlas::LineKind::kMarking;
+  marking.from.x() = 9;
+  broken.to.x() = kNaN;
+  const MarkerArray array = atlas_rviz::lineMarkers({kStamp, "lidar_left", {wall, broken, marking}});
+  expectSound(array);
+  const Marker* list = find(array, "lines");
+  ASSERT_NE(list, nullptr);
+  ASSERT_EQ(list->points.size(), 4U);
+  ASSERT_EQ(list->colors.size(), 4U);
+  EXPECT_EQ(list->points[1].y, 2);
+  EXPECT_EQ(list->points[2].x, 9);
+  EXPECT_NE(list->colors[0], list->colors[2]);
+}
+
 TEST(Obstacles, NothingFoundClearsTheScreen) {
   atlas::Obstacles obstacles;
   obstacles.stamp = kStamp;
