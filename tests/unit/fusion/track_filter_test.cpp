@@ -72,33 +72,6 @@ TEST(TrackFilter, KnowsHowAnObjectMoves) {
   EXPECT_LT(walks.standingProbability(), 0.5) << "a walker is not taken for noise";
 }
 
-TEST(TrackFilter, JacobianOfTheTurnIsItsDerivative) {
-  for (const double w : {0.0, 1e-6, 0.3, -0.8}) {
-    TrackState state = born(1.0, 2.0);
-    state.mean(kVx) = 7.0;
-    state.mean(kVy) = -3.0;
-    state.mean(kTurnRate) = w;
-    state.covariance.setIdentity();
-    const MotionNoise still{0.0, 0.0};
-    TrackMatrix J;
-    const double step = 1e-6;
-    for (int i = 0; i < kTrackStates; ++i) {
-      TrackState up = state, down = state;
-      up.mean(i) += step;
-      down.mean(i) -= step;
-      constantTurn().predict(up, 0.1, still);
-      constantTurn().predict(down, 0.1, still);
-      J.col(i) = (up.mean - down.mean) / (2.0 * step);
-    }
-    TrackState predicted = state;
-    constantTurn().predict(predicted, 0.1, still);
-    const TrackMatrix expected = J * J.transpose();
-    const TrackMatrix error = predicted.covariance - expected;
-    const double largest = error.topLeftCorner(5, 5).cwiseAbs().maxCoeff();
-    EXPECT_LT(largest, 1e-5) << "turn rate " << w;
-  }
-}
-
 /// The normalized estimation error squared of position and velocity has the mean 4 when the covariance is
 /// true; 200 runs of 30 updates with accelerations drawn as the filter assumes.
 TEST(TrackFilter, CovarianceIsTrue) {

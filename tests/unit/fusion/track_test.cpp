@@ -27,26 +27,6 @@ TEST(Track, ExistenceByHand) {
   EXPECT_EQ(track.existence(), before) << "a scan that would not have shown it says nothing";
 }
 
-TEST(Track, AHeadingThatADetectorTurnsRoundNowAndThenStays) {
-  Track track = trackOf(carAt(0.0, 0.0));
-  for (int i = 1; i <= 30; ++i) {
-    track.predict(at(0.1 * i));
-    track.update(carAt(0.8 * i, i % 4 == 0 ? M_PI : 0.0), 2.5);
-  }
-  EXPECT_NEAR(track.shape().yaw_rad, 0.0, 0.1);
-  EXPECT_TRUE(track.report(0.5).heading_known);
-}
-
-TEST(Track, AHeadingThatWasTakenTheWrongWayRoundIsTurnedByTheMotion) {
-  Track track = trackOf(carAt(0.0, M_PI));
-  for (int i = 1; i <= 40; ++i) {
-    track.predict(at(0.1 * i));
-    Obstacle box{{0.8 * i, 0.0, 0.8}, 0.0, {4.4, 1.8, 1.5}, 100};
-    track.update(SeenBox(box, {0.8 * i - 15.0, -10.0, 1.8}, {}), 2.5);
-  }
-  EXPECT_NEAR(track.shape().yaw_rad, 0.0, 0.1);
-}
-
 TEST(Track, HistoryIsBoundedAndInOrder) {
   Track track = trackOf(carAt(0.0, 0.0));
   for (int i = 1; i <= 10; ++i) {
