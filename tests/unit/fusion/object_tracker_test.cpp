@@ -124,14 +124,14 @@ TEST_F(TrackerTest, ReversingDoesNotFlipHeadings) {
   EXPECT_GE(told, 44);
 }
 
-TEST_F(TrackerTest, NothingInheritsAnIdFromFarAway) {  // W19
+TEST_F(TrackerTest, W19_NothingInheritsAnIdFromFarAway) {
   for (double t = 0.0; t < 0.95; t += 0.1) look(t, {Vehicle{10.0, 0.0}}, {0.0, 0.0});
   const std::uint32_t id = tracker_.report(at(0.9)).objects.at(0).id;
   for (double t = 1.0; t < 2.0; t += 0.1) look(t, {Vehicle{35.0, 0.0}}, {0.0, 0.0});
   for (const Object& object : tracker_.report(at(2.0)).objects) EXPECT_NE(object.id, id);
 }
 
-TEST_F(TrackerTest, OneObjectLostDoesNotSwapTheOthers) {  // W19: ids by place, not by order
+TEST_F(TrackerTest, W19_OneObjectLostDoesNotSwapTheOthers) {  // ids go by place, not by order
   for (double t = 0.0; t < 2.0; t += 0.1) {
     std::vector<Vehicle> cars;
     for (int i = 0; i < 4; ++i) {

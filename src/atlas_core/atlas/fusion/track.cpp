@@ -122,6 +122,7 @@ void Track::witness(const Measurement& measurement, const std::string& input) {
     ++scores_;
   }
   sources_.push_back({input, stamp_, measurement.index});
+  weighClasses();
 }
 
 void Track::miss(double detectability) {
