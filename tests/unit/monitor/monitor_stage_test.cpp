@@ -148,6 +148,13 @@ TEST(MonitorStage, ProgressNeverPassesAStatusThatIsOwed) {
   EXPECT_EQ(run.stage.progress(), kEndOfTime);
 }
 
+TEST(MonitorStage, ALongGapOfAllDataDoesNotHoldTheSourceBack) {
+  Watching run;
+  run.drive(0, 4);
+  for (std::size_t i = 0; i < run.stage.inputs(); ++i) run.stage.advance(i, at(14.0));
+  EXPECT_GT(run.stage.progress(), at(13.0));
+}
+
 TEST(MonitorStage, PicturesAreJudgedByTheMotionThatTheReceiverSees) {
   Watching run;
   auto picture = std::make_shared<Image>();

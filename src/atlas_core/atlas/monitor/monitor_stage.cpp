@@ -8,6 +8,10 @@ namespace atlas {
 namespace {
 
 constexpr Duration kTick = 100 * kMillisecond;  // silence is noticed so soon
+/// Silence of everything is told when the inputs are known for so long: less than a source may be ahead,
+/// which would else wait for this stage while this stage waits for its next message; more than the ends of
+/// streams lie apart.
+constexpr Duration kSilence = 500 * kMillisecond;
 
 std::vector<std::string> inputNames(const MonitorParams& p) {
   validate(p);
@@ -215,6 +219,12 @@ void MonitorStage::emit(Stamp stamp, const Sensor& sensor) {
 }
 
 Stamp MonitorStage::heldBackFrom() const { return next_tick_; }
+
+void MonitorStage::onProgress() {
+  const Stamp known = merge().watermark();
+  if (next_tick_ == kEndOfTime || known == kEndOfTime) return;  // nothing seen yet; after the last message
+  if (known > next_tick_ + kSilence) tickUntil(known - kSilence);
+}
 
 void MonitorStage::onEnd() {
   for (const Sensor& sensor : sensors_) {

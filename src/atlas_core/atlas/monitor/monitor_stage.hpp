@@ -79,6 +79,7 @@ class MonitorStage : public Stage {
 
  protected:
   [[nodiscard]] Stamp heldBackFrom() const override;
+  void onProgress() override;
   void onEnd() override;
 
  private:
