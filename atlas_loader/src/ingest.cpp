@@ -8,7 +8,7 @@
 namespace atlas_loader {
 
 Ingest::Ingest(std::vector<atlas::StreamInfo> streams, atlas::Duration max_delay)
-    : streams_(std::move(streams)), max_delay_(max_delay) {
+    : streams_(std::move(streams)), max_delay_(max_delay), state_(streams_.size()) {
   startEpoch();
 }
 
@@ -16,7 +16,6 @@ void Ingest::startEpoch() {
   std::vector<std::string> names;
   for (const atlas::StreamInfo& stream : streams_) names.push_back(stream.topic);
   merge_ = std::make_unique<atlas::EventMerge>(std::move(names));
-  newest_of_.assign(streams_.size(), atlas::kBeginOfTime);
   newest_ = oldest_ = atlas::kBeginOfTime;
   for (const auto& [stream, event] : transforms_) pushToMerge(stream, 0, event.stamp, event.payload);
 }
@@ -26,23 +25,67 @@ void Ingest::endEpoch() {
   for (std::size_t i = 0; i < streams_.size(); ++i) late_before_ += merge_->late(i);
 }
 
+void Ingest::nextEpoch() {
+  endEpoch();
+  put({Item::Kind::kEndOfEpoch, std::nullopt});
+  startEpoch();
+  for (Stream& stream : state_) {
+    stream.behind = !stream.ahead && stream.newest != atlas::kBeginOfTime;
+    stream.ahead = false;
+    stream.newest = atlas::kBeginOfTime;
+  }
+  newest_held_ = atlas::kBeginOfTime;
+  std::vector<Held> held;
+  held.swap(held_);
+  for (Held& message : held) take(message.stream, message.stamp, std::move(message.payload));
+}
+
+bool Ingest::isOfNextEpoch(const Stream& stream, atlas::Stamp stamp) const {
+  if (stream.newest != atlas::kBeginOfTime && stamp < stream.newest - atlas::kSecond) return true;
+  // Other streams are there already, and this one would come too late for the epoch that they left.
+  return !held_.empty() && !stream.ahead && stamp < newest_ - max_delay_;
+}
+
 void Ingest::push(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload) {
   ++received_;
-  const bool is_static = streams_[stream].kind == atlas::StreamKind::kStaticTransforms;
-  if (!is_static && newest_of_[stream] != atlas::kBeginOfTime &&
-      stamp < newest_of_[stream] - atlas::kSecond) {
-    endEpoch();
-    put({Item::Kind::kEndOfEpoch, std::nullopt});
-    startEpoch();
-  }
-  if (is_static) {  // they hold until the publisher has gone: a recording that loops may repeat them or not
-    if (isKnown(payload)) return;
+  if (streams_[stream].kind == atlas::StreamKind::kStaticTransforms) {
+    if (isKnown(payload)) return;  // they hold until the publisher has gone: a loop may repeat them or not
     transforms_.push_back({stream, {stamp, stream, payload}});
     pushToMerge(stream, 0, stamp, std::move(payload));  // transforms that never change come first
     return;
   }
+  Stream& state = state_[stream];
+  if (isOfNextEpoch(state, stamp)) {
+    if (state.ahead) nextEpoch();  // there already, and on to the one after it
+    state.ahead = true;
+    state.newest = atlas::kBeginOfTime;
+  }
+  if (state.ahead) {
+    hold(stream, stamp, std::move(payload));
+  } else {
+    take(stream, stamp, std::move(payload));
+  }
+}
+
+void Ingest::hold(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload) {
+  state_[stream].newest = std::max(state_[stream].newest, stamp);
+  held_.push_back({stream, stamp, std::move(payload)});
+  newest_held_ = std::max(newest_held_, stamp);
+  const bool all = std::all_of(state_.begin(), state_.end(), [](const Stream& other) {
+    return other.ahead || other.newest == atlas::kBeginOfTime;
+  });
+  if (all || newest_held_ - held_.front().stamp >= max_delay_) nextEpoch();
+}
+
+void Ingest::take(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload) {
+  Stream& state = state_[stream];
+  if (state.behind && newest_ != atlas::kBeginOfTime && stamp > newest_ + max_delay_) {
+    ++late_before_;  // of the epoch before, which waited for it long enough
+    return;
+  }
+  state.behind = false;
   pushToMerge(stream, stamp, stamp, std::move(payload));
-  newest_of_[stream] = std::max(newest_of_[stream], stamp);
+  state.newest = std::max(state.newest, stamp);
   oldest_ = oldest_ == atlas::kBeginOfTime ? stamp : std::min(oldest_, stamp);
   if (stamp <= newest_) return;
   newest_ = stamp;
@@ -80,8 +123,10 @@ void Ingest::advanceSilent() {
 }
 
 void Ingest::finish() {
+  if (!held_.empty()) nextEpoch();
   endEpoch();
   transforms_.clear();
+  state_.assign(streams_.size(), {});
   put({Item::Kind::kEndOfRun, std::nullopt});
   startEpoch();
 }

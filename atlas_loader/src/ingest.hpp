@@ -2,6 +2,10 @@
 // Brings messages that arrive on topics in any order (rosbag play, other nodes) into the order of their
 // stamps, for the graph. A stream that is silent for `max_delay_s` of event time is not waited for; what
 // comes later than that is counted as late.
+//
+// A bag that loops begins a new epoch. Every stream gets there by itself, as the last messages of one may
+// come after the first ones of another: what is of the next epoch is held back until all streams are there,
+// or for `max_delay_s` of its event time.
 #pragma once
 
 #include <condition_variable>
@@ -27,8 +31,7 @@ class Ingest {
 
   Ingest(std::vector<atlas::StreamInfo> streams, atlas::Duration max_delay);
 
-  /// A message of `stream`. A stamp more than a second before the newest of its stream begins a new epoch (a
-  /// bag that loops).
+  /// A message of `stream`. A stamp more than a second before the newest of its stream is of the next epoch.
   void push(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload);
   /// Every publisher has gone: nothing more will come.
   void finish();
@@ -40,8 +43,23 @@ class Ingest {
   [[nodiscard]] std::uint64_t received() const { return received_; }
 
  private:
+  /// What the merge needs of a stream.
+  struct Stream {
+    atlas::Stamp newest = atlas::kBeginOfTime;  ///< in the epoch that it is in
+    bool ahead = false;                         ///< is in the next epoch
+    bool behind = false;                        ///< not seen since the last epoch ended
+  };
+  struct Held {
+    std::size_t stream;
+    atlas::Stamp stamp;
+    atlas::Payload payload;
+  };
   void startEpoch();
   void endEpoch();
+  void nextEpoch();
+  [[nodiscard]] bool isOfNextEpoch(const Stream& stream, atlas::Stamp stamp) const;
+  void hold(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload);
+  void take(std::size_t stream, atlas::Stamp stamp, atlas::Payload payload);
   void advanceSilent();
   void pushToMerge(std::size_t stream, atlas::Stamp order, atlas::Stamp stamp, atlas::Payload payload);
   [[nodiscard]] bool isKnown(const atlas::Payload& static_transforms) const;
@@ -51,9 +69,11 @@ class Ingest {
   atlas::Duration max_delay_;
   std::unique_ptr<atlas::EventMerge> merge_;
   std::vector<std::pair<std::size_t, atlas::Event>>
-      transforms_;                       ///< static ones by stream; given again to each epoch
-  std::vector<atlas::Stamp> newest_of_;  ///< per stream
+      transforms_;  ///< static ones by stream; given again to each epoch
+  std::vector<Stream> state_;
   atlas::Stamp newest_ = atlas::kBeginOfTime, oldest_ = atlas::kBeginOfTime;  ///< of this epoch
+  std::vector<Held> held_;                                                    ///< of the next epoch
+  atlas::Stamp newest_held_ = atlas::kBeginOfTime;
   std::uint64_t late_before_ = 0, received_ = 0;
 
   mutable std::mutex mutex_;  ///< guards what follows

@@ -108,6 +108,67 @@ TEST(Ingest, TimeThatJumpsBackEndsTheEpoch) {
   EXPECT_EQ(ingest.late(), 0U);
 }
 
+/// Events of each epoch; the last one has the rest.
+std::vector<std::size_t> eventsOfEpochs(Ingest& ingest) {
+  std::vector<std::size_t> events(1, 0);
+  for (auto item = ingest.pop(); item->kind != Item::Kind::kEndOfRun; item = ingest.pop()) {
+    if (item->kind == Item::Kind::kEndOfEpoch) events.push_back(0);
+    if (item->kind == Item::Kind::kEvent) ++events.back();
+  }
+  return events;
+}
+
+TEST(Ingest, StreamsGetIntoTheNextEpochOneByOne) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<std::deque<atlas::Stamp>> left(3);
+    for (int round = 0; round < 3; ++round) {
+      for (int i = 0; i <= 500; ++i) left[1].push_back(kBegin + i * kStep);
+      for (int i = 0; i <= 100; ++i) left[2].push_back(kBegin + 5 * i * kStep);
+    }
+    Ingest ingest(streams(), 2 * atlas::kSecond);
+    while (!left[1].empty() || !left[2].empty()) {  // either stream up to 30 messages of the imu ahead
+      const double imu_share = static_cast<double>(left[1].size()) / 501.0;
+      const double fix_share = static_cast<double>(left[2].size()) / 101.0;
+      std::size_t stream = 1 + random() % 2;
+      if (imu_share < fix_share - 0.06) stream = 2;
+      if (fix_share < imu_share - 0.06) stream = 1;
+      if (left[stream].empty()) stream = 3 - stream;
+      ingest.push(stream, left[stream].front(), imu(left[stream].front()));
+      left[stream].pop_front();
+    }
+    ingest.finish();
+    EXPECT_EQ(eventsOfEpochs(ingest), (std::vector<std::size_t>{602, 602, 602})) << "seed " << seed;
+    EXPECT_EQ(ingest.late(), 0U) << "seed " << seed;
+  }
+}
+
+TEST(Ingest, AStreamThatEndedEarlyDoesNotKeepTheNextEpochBack) {
+  Ingest ingest(streams(), atlas::kSecond);
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0; i <= 500; ++i) {
+      ingest.push(1, kBegin + i * kStep, imu(0));
+      if (i == 0) ingest.push(2, kBegin, imu(0));  // alone no jump back, but 5 s late for the first round
+    }
+  }
+  ingest.finish();
+  EXPECT_EQ(eventsOfEpochs(ingest), (std::vector<std::size_t>{502, 502}));
+  EXPECT_EQ(ingest.late(), 0U);
+}
+
+TEST(Ingest, AStreamThatStaysInTheEpochBeforeIsCountedAsLate) {
+  Ingest ingest(streams(), atlas::kSecond);
+  for (int i = 0; i <= 500; ++i) {
+    ingest.push(1, kBegin + i * kStep, imu(0));
+    if (i == 400) ingest.push(2, kBegin + i * kStep, imu(0));
+  }
+  for (int i = 0; i <= 200; ++i) ingest.push(1, kBegin + i * kStep, imu(0));
+  ingest.push(2, kBegin + 450 * kStep, imu(0));  // 4.5 s, while the second round is at 2 s
+  ingest.finish();
+  EXPECT_EQ(eventsOfEpochs(ingest), (std::vector<std::size_t>{502, 201}));
+  EXPECT_EQ(ingest.late(), 1U);
+}
+
 TEST(Ingest, ALoopKeepsItsStaticTransformsWhetherItRepeatsThemOrNot) {
   for (const bool repeated : {false, true}) {
     Ingest ingest(streams(), atlas::kSecond);
