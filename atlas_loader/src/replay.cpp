@@ -31,21 +31,11 @@ std::atomic<bool> g_interrupted{false};  // set by the signal handler, which can
 /// Reads one section of the configuration.
 class Configuration {
  public:
-  explicit Configuration(const std::string& file) : file_(file) {
-    try {
-      root_ = YAML::LoadFile(file);
-    } catch (const YAML::Exception& error) {
-      throw std::invalid_argument("configuration " + file + ": " + error.what());
-    }
-  }
+  explicit Configuration(const std::string& file) : file_(file), root_(atlas_ros::loadConfiguration(file)) {}
   template <class Params>
   Params section(const std::string& name) {
     read_.insert(name);
-    atlas_ros::YamlReader reader(root_[name], file_ + ": " + name);
-    Params params;
-    readParams(reader, params);
-    reader.rejectUnread();
-    return params;
+    return atlas_ros::readSection<Params>(root_, file_, name);
   }
   /// Sections that nobody reads are typing errors.
   void rejectUnread() const {
@@ -108,7 +98,6 @@ atlas::WriterParams writerParams(Configuration& configuration, const ReplayOptio
 
 /// Adds the stages in order of the data path; the configuration decides all their parameters.
 void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const ReplayOptions& options) {
-  using atlas_ros::readParams;
   const auto decoder = configuration.section<VideoDecodeParams>("video_decoder");
   graph.beginThread();  // beside reading and unpacking
   graph.add([&](atlas::LocalGraph::Bus& bus) { return bindVideoDecoder(bus, decoder); });

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sensor_check.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -18,19 +16,6 @@
 #include "video_decode_stage.hpp"
 
 namespace atlas_loader {
-namespace {
-
-template <class Params>
-Params sectionOf(const YAML::Node& root, const std::string& file, const std::string& name) {
-  using atlas_ros::readParams;
-  atlas_ros::YamlReader reader(root[name], file + ": " + name);
-  Params params;
-  readParams(reader, params);
-  reader.rejectUnread();
-  return params;
-}
-
-}  // namespace
 
 bool SensorCheck::clean() const {
   return std::all_of(sensors.begin(), sensors.end(),
@@ -92,14 +77,9 @@ SensorCheck checkSensors(const SensorCheckOptions& options) {
       !options.config.empty()
           ? options.config
           : packageFile("atlas_bringup", "config/" + configurationFor(reader->streams()) + ".yaml");
-  YAML::Node root;
-  try {
-    root = YAML::LoadFile(file);
-  } catch (const YAML::Exception& error) {
-    throw std::invalid_argument("configuration " + file + ": " + error.what());
-  }
-  const auto decoder = sectionOf<VideoDecodeParams>(root, file, "video_decoder");
-  const auto monitor = sectionOf<atlas::MonitorParams>(root, file, "sensor_monitor");
+  const YAML::Node root = atlas_ros::loadConfiguration(file);
+  const auto decoder = atlas_ros::readSection<VideoDecodeParams>(root, file, "video_decoder");
+  const auto monitor = atlas_ros::readSection<atlas::MonitorParams>(root, file, "sensor_monitor");
   SensorCheckSummary summary;
   atlas::LocalGraph graph;
   using Bus = atlas::LocalGraph::Bus;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "smooth_run.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <filesystem>
 #include <stdexcept>
 
@@ -52,15 +50,8 @@ atlas::LocalizationParams localizationParams(const std::string& config, const In
       !config.empty()
           ? config
           : packageFile("atlas_bringup", "config/" + configurationFor(openInput(input)->streams()) + ".yaml");
-  try {
-    atlas_ros::YamlReader reader(YAML::LoadFile(file)["localization"], file + ": localization");
-    atlas::LocalizationParams params;
-    readParams(reader, params);
-    reader.rejectUnread();
-    return params;
-  } catch (const YAML::Exception& error) {
-    throw std::invalid_argument("configuration " + file + ": " + error.what());
-  }
+  return atlas_ros::readSection<atlas::LocalizationParams>(atlas_ros::loadConfiguration(file), file,
+                                                           "localization");
 }
 
 }  // namespace atlas_loader

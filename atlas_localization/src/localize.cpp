@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "localize.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -22,14 +20,8 @@ atlas::LocalizationParams paramsOf(const LocalizeOptions& options) {
   atlas::LocalizationParams params;
   params.filter = "eskf";
   if (!options.config.empty()) {
-    try {
-      atlas_ros::YamlReader reader(YAML::LoadFile(options.config)["localization"],
-                                   options.config + ": localization");
-      readParams(reader, params);
-      reader.rejectUnread();
-    } catch (const YAML::Exception& error) {
-      throw std::invalid_argument("configuration " + options.config + ": " + error.what());
-    }
+    params = atlas_ros::readSection(atlas_ros::loadConfiguration(options.config), options.config,
+                                    "localization", params);
   }
   if (!options.filter.empty()) params.filter = options.filter;
   params.gnss_antenna_frame = kAntennaFrame;

@@ -30,10 +30,7 @@ void TraceWriterStage::push(const ObjectsPtr& objects) {
   enqueue(kObjects, objects->stamp, [this, objects, update] {
     for (const Object& object : objects->objects) {
       if (object.sources.empty()) continue;
-      ProductOrigins product{"objects/" + std::to_string(object.id), update, objects->stamp, {}};
-      for (const ObjectSource& source : object.sources)
-        product.origins.push_back({source.input, source.stamp, {}, source.index});
-      write(product);
+      write({"objects/" + std::to_string(object.id), update, objects->stamp, object.sources});
     }
   });
 }

@@ -15,6 +15,7 @@
 #include <atlas_msgs/SensorStatus.h>
 #include <atlas_msgs/TemperatureRange.h>
 #include <atlas_msgs/VideoPacket.h>
+#include <geometry_msgs/Point.h>
 #include <geometry_msgs/Vector3.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/CameraInfo.h>
@@ -40,6 +41,12 @@ namespace atlas_ros {
 ros::Time toTime(atlas::Stamp stamp);
 atlas::Stamp fromTime(const ros::Time& time);
 geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v);
+geometry_msgs::Point point(const Eigen::Vector3d& p);
+/// Of a geometry_msgs::Point or Vector3.
+template <class Message>
+Eigen::Vector3d fromXyz(const Message& msg) {
+  return {msg.x, msg.y, msg.z};
+}
 
 // Sensors
 tf2_msgs::TFMessage toMsg(const atlas::StaticTransforms& transforms, atlas::Stamp stamp);
@@ -95,6 +102,8 @@ atlas_msgs::ProjectedDetections toMsg(const atlas::ProjectedDetections& projecte
 atlas::ProjectedDetections fromMsg(const atlas_msgs::ProjectedDetections& msg);
 atlas_msgs::SensorStatus toMsg(const atlas::SensorStatus& status);
 atlas::SensorStatus fromMsg(const atlas_msgs::SensorStatus& msg);
+atlas_msgs::Origin toMsg(const atlas::Origin& origin);
+atlas::Origin fromMsg(const atlas_msgs::Origin& msg);
 atlas_msgs::ProductOrigins toMsg(const atlas::ProductOrigins& product);
 atlas::ProductOrigins fromMsg(const atlas_msgs::ProductOrigins& msg);
 sensor_msgs::Image toMsg(const atlas::DepthImage& depth);  // 32FC1, REP-118

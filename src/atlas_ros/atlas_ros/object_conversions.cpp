@@ -11,18 +11,6 @@ namespace {
 
 constexpr const char* kMapFrame = "map";
 
-geometry_msgs::Point point(const Eigen::Vector3d& p) {
-  geometry_msgs::Point msg;
-  msg.x = p.x();
-  msg.y = p.y();
-  msg.z = p.z();
-  return msg;
-}
-template <class Message>
-Eigen::Vector3d vector(const Message& v) {
-  return {v.x, v.y, v.z};
-}
-
 atlas_msgs::Object toMsg(const atlas::Object& o) {
   atlas_msgs::Object msg;
   msg.id = o.id;
@@ -45,12 +33,7 @@ atlas_msgs::Object toMsg(const atlas::Object& o) {
   msg.unseen = o.unseen_s;
   msg.detectability = o.detectability;
   msg.score = o.score;
-  for (const atlas::ObjectSource& source : o.sources) {
-    msg.sources.emplace_back();
-    msg.sources.back().input = source.input;
-    msg.sources.back().stamp = toTime(source.stamp);
-    msg.sources.back().index = source.index;
-  }
+  for (const atlas::Origin& source : o.sources) msg.sources.push_back(atlas_ros::toMsg(source));
   for (const atlas::ObjectPast& past : o.history) {
     msg.history.emplace_back();
     msg.history.back().stamp = toTime(past.stamp);
@@ -68,11 +51,11 @@ atlas::Outcome<atlas::Object> fromMsg(const atlas_msgs::Object& msg) {
   o.class_probability = msg.class_probability;
   o.class_probabilities = msg.class_probabilities;
   o.existence = msg.existence;
-  o.position = vector(msg.position);
+  o.position = fromXyz(msg.position);
   o.yaw_rad = msg.yaw;
   o.heading_known = msg.heading_known != 0;
-  o.size = vector(msg.size);
-  o.velocity_mps = vector(msg.velocity);
+  o.size = fromXyz(msg.size);
+  o.velocity_mps = fromXyz(msg.velocity);
   o.yaw_rate_radps = msg.yaw_rate;
   if (!o.position.allFinite() || !o.size.allFinite() || !o.velocity_mps.allFinite() ||
       !std::isfinite(o.yaw_rad))
@@ -86,10 +69,9 @@ atlas::Outcome<atlas::Object> fromMsg(const atlas_msgs::Object& msg) {
   o.unseen_s = msg.unseen;
   o.detectability = msg.detectability;
   o.score = msg.score;
-  for (const auto& source : msg.sources)
-    o.sources.push_back({source.input, fromTime(source.stamp), source.index});
+  for (const atlas_msgs::Origin& source : msg.sources) o.sources.push_back(atlas_ros::fromMsg(source));
   for (const auto& past : msg.history)
-    o.history.push_back({fromTime(past.stamp), vector(past.position), vector(past.velocity), past.yaw});
+    o.history.push_back({fromTime(past.stamp), fromXyz(past.position), fromXyz(past.velocity), past.yaw});
   return o;
 }
 

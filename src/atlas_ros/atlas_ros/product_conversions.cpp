@@ -11,17 +11,6 @@ namespace {
 constexpr const char* kMapFrame = "map";
 constexpr const char* kBaseFrame = "base_link";
 
-geometry_msgs::Point point(const Eigen::Vector3d& p) {
-  geometry_msgs::Point msg;
-  msg.x = p.x();
-  msg.y = p.y();
-  msg.z = p.z();
-  return msg;
-}
-Eigen::Vector3d fromPoint(const geometry_msgs::Point& p) { return {p.x, p.y, p.z}; }
-
-Eigen::Vector3d fromVector3(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
-
 }  // namespace
 
 nav_msgs::Odometry toMsg(const atlas::Odometry& odometry) {
@@ -43,8 +32,8 @@ atlas::Outcome<atlas::Odometry> fromMsg(const nav_msgs::Odometry& msg) {
   atlas::Odometry odometry;
   odometry.stamp = fromTime(msg.header.stamp);
   odometry.T_map_imu = *pose;
-  odometry.velocity_imu_mps = fromVector3(msg.twist.twist.linear);
-  odometry.angular_velocity_imu_radps = fromVector3(msg.twist.twist.angular);
+  odometry.velocity_imu_mps = fromXyz(msg.twist.twist.linear);
+  odometry.angular_velocity_imu_radps = fromXyz(msg.twist.twist.angular);
   if (!odometry.velocity_imu_mps.allFinite() || !odometry.angular_velocity_imu_radps.allFinite()) {
     return atlas::Reason::kNotFinite;
   }
@@ -77,32 +66,36 @@ atlas::SensorStatus fromMsg(const atlas_msgs::SensorStatus& msg) {
   return status;
 }
 
+atlas_msgs::Origin toMsg(const atlas::Origin& origin) {
+  atlas_msgs::Origin msg;
+  msg.topic = origin.topic;
+  msg.index_known = origin.index.has_value();
+  msg.index = origin.index.value_or(0);
+  msg.item_known = origin.item.has_value();
+  msg.item = origin.item.value_or(0);
+  msg.stamp = toTime(origin.stamp);
+  return msg;
+}
+
+atlas::Origin fromMsg(const atlas_msgs::Origin& msg) {
+  atlas::Origin origin{msg.topic, fromTime(msg.stamp), {}, {}};
+  if (msg.index_known) origin.index = msg.index;
+  if (msg.item_known) origin.item = msg.item;
+  return origin;
+}
+
 atlas_msgs::ProductOrigins toMsg(const atlas::ProductOrigins& product) {
   atlas_msgs::ProductOrigins msg;
   msg.header.stamp = toTime(product.stamp);
   msg.product = product.product;
   msg.index = product.index;
-  for (const atlas::Origin& o : product.origins) {
-    atlas_msgs::Origin origin;
-    origin.topic = o.topic;
-    origin.index_known = o.index.has_value();
-    origin.index = o.index.value_or(0);
-    origin.item_known = o.item.has_value();
-    origin.item = o.item.value_or(0);
-    origin.stamp = toTime(o.stamp);
-    msg.origins.push_back(origin);
-  }
+  for (const atlas::Origin& origin : product.origins) msg.origins.push_back(toMsg(origin));
   return msg;
 }
 
 atlas::ProductOrigins fromMsg(const atlas_msgs::ProductOrigins& msg) {
   atlas::ProductOrigins product{msg.product, msg.index, fromTime(msg.header.stamp), {}};
-  for (const atlas_msgs::Origin& o : msg.origins) {
-    atlas::Origin origin{o.topic, fromTime(o.stamp), {}, {}};
-    if (o.index_known) origin.index = o.index;
-    if (o.item_known) origin.item = o.item;
-    product.origins.push_back(origin);
-  }
+  for (const atlas_msgs::Origin& origin : msg.origins) product.origins.push_back(fromMsg(origin));
   return product;
 }
 
@@ -186,7 +179,7 @@ atlas::Obstacles fromMsg(const atlas_msgs::ObstacleArray& msg) {
   atlas::Obstacles obstacles;
   obstacles.stamp = fromTime(msg.header.stamp);
   for (const atlas_msgs::Obstacle& m : msg.obstacles) {
-    obstacles.obstacles.push_back({fromPoint(m.center), m.yaw, fromVector3(m.size), m.points});
+    obstacles.obstacles.push_back({fromXyz(m.center), m.yaw, fromXyz(m.size), m.points});
   }
   return obstacles;
 }
@@ -215,7 +208,7 @@ atlas::Outcome<atlas::Lines> fromMsg(const atlas_msgs::LineArray& msg) {
   lines.lines.reserve(msg.lines.size());
   for (const atlas_msgs::Line& m : msg.lines) {
     if (m.kind > atlas_msgs::Line::MARKING) return atlas::Reason::kBadLayout;
-    const Eigen::Vector3d from = fromPoint(m.start), to = fromPoint(m.end);
+    const Eigen::Vector3d from = fromXyz(m.start), to = fromXyz(m.end);
     if (!from.allFinite() || !to.allFinite()) return atlas::Reason::kNotFinite;
     lines.lines.push_back(
         {static_cast<atlas::LineKind>(m.kind), from, to, m.ring, m.points, m.rms, m.intensity});
@@ -256,8 +249,8 @@ atlas::Frustums fromMsg(const atlas_msgs::FrustumArray& msg) {
     frustum.range_m = m.range_m;
     frustum.depth_sigma_m = m.depth_sigma_m;
     frustum.points = m.points;
-    frustum.position = fromPoint(m.position);
-    for (std::size_t i = 0; i < frustum.corners.size(); ++i) frustum.corners[i] = fromPoint(m.corners[i]);
+    frustum.position = fromXyz(m.position);
+    for (std::size_t i = 0; i < frustum.corners.size(); ++i) frustum.corners[i] = fromXyz(m.corners[i]);
     frustums.frustums.push_back(frustum);
   }
   return frustums;

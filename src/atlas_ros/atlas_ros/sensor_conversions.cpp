@@ -15,8 +15,6 @@ bool finite(const geometry_msgs::Vector3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-Eigen::Vector3d fromVector3(const geometry_msgs::Vector3& v) { return {v.x, v.y, v.z}; }
-
 geometry_msgs::Quaternion quaternion(const Eigen::Quaterniond& q) {
   geometry_msgs::Quaternion msg;
   msg.x = q.x();
@@ -42,6 +40,14 @@ geometry_msgs::Vector3 vector3(const Eigen::Vector3d& v) {
   msg.x = v.x();
   msg.y = v.y();
   msg.z = v.z();
+  return msg;
+}
+
+geometry_msgs::Point point(const Eigen::Vector3d& p) {
+  geometry_msgs::Point msg;
+  msg.x = p.x();
+  msg.y = p.y();
+  msg.z = p.z();
   return msg;
 }
 
@@ -95,7 +101,7 @@ atlas::Outcome<atlas::StaticTransforms> fromMsg(const tf2_msgs::TFMessage& msg) 
     if (!rotation) return rotation.reason();
     if (!finite(m.transform.translation)) return atlas::Reason::kNotFinite;
     result.transforms.push_back(
-        {m.header.frame_id, m.child_frame_id, {*rotation, fromVector3(m.transform.translation)}});
+        {m.header.frame_id, m.child_frame_id, {*rotation, fromXyz(m.transform.translation)}});
   }
   return result;
 }
@@ -118,8 +124,8 @@ atlas::Outcome<atlas::ImuSample> fromMsg(const sensor_msgs::Imu& msg) {
   if (!finite(msg.angular_velocity) || !finite(msg.linear_acceleration)) return atlas::Reason::kNotFinite;
   atlas::ImuSample sample;
   sample.stamp = fromTime(msg.header.stamp);
-  sample.angular_velocity_radps = fromVector3(msg.angular_velocity);
-  sample.linear_acceleration_mps2 = fromVector3(msg.linear_acceleration);
+  sample.angular_velocity_radps = fromXyz(msg.angular_velocity);
+  sample.linear_acceleration_mps2 = fromXyz(msg.linear_acceleration);
   const auto& o = msg.orientation;
   const bool all_zero =
       o.x == 0 && o.y == 0 && o.z == 0 && o.w == 0;  // drivers without orientation leave it so
@@ -139,7 +145,7 @@ sensor_msgs::MagneticField toMsg(const atlas::MagneticSample& sample) {
   return msg;
 }
 atlas::MagneticSample fromMsg(const sensor_msgs::MagneticField& msg) {
-  return {fromTime(msg.header.stamp), fromVector3(msg.magnetic_field)};
+  return {fromTime(msg.header.stamp), fromXyz(msg.magnetic_field)};
 }
 
 sensor_msgs::FluidPressure toPressureMsg(const atlas::ScalarSample& sample) {

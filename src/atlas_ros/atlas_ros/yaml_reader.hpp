@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace atlas_ros {
 
@@ -43,5 +44,26 @@ class YamlReader {
   std::string name_;
   std::set<std::string> read_;
 };
+
+/// A configuration file; what is wrong with it is said with its name (std::invalid_argument).
+inline YAML::Node loadConfiguration(const std::string& file) {
+  YAML::Node root;
+  try {
+    root = YAML::LoadFile(file);
+  } catch (const YAML::Exception& error) {
+    throw std::invalid_argument("configuration " + file + ": " + error.what());
+  }
+  if (!root.IsMap()) throw std::invalid_argument("configuration " + file + ": not a map of sections");
+  return root;
+}
+/// Parameters in `section` of the configuration in `file`; `params` are those that may stay away.
+template <class Params>
+Params readSection(const YAML::Node& configuration, const std::string& file, const std::string& section,
+                   Params params = {}) {
+  YamlReader reader(configuration[section], file + ": " + section);
+  readParams(reader, params);
+  reader.rejectUnread();
+  return params;
+}
 
 }  // namespace atlas_ros

@@ -30,7 +30,7 @@ TEST(TraceWriter, RowsOfAllInputsInOrderOfStampsAndObjectsThatWereMeasured) {
     objects->objects.resize(2);
     objects->objects[0].id = 7;  // coasts: nothing was measured
     objects->objects[1].id = 17;
-    objects->objects[1].sources.push_back({"obstacles", 14, 2});
+    objects->objects[1].sources.push_back({"obstacles", 14, {}, 2});
     stage.push(objects);
     EXPECT_FALSE(fs::exists(out / "trace/origins.csv")) << "not before it is complete";
     for (std::size_t i = 0; i < stage.inputs(); ++i) stage.finish(i);

@@ -9,22 +9,15 @@
 #include "atlas/fusion/box_measurement.hpp"
 #include "atlas/fusion/point_measurement.hpp"
 #include "atlas/fusion/radar_sign.hpp"
+#include "track_shapes.hpp"
 
 namespace atlas {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A car of 4.4 x 1.8 m at a place, heading along x.
-TrackShape car(double x, double y) {
-  TrackShape shape;
-  shape.state.mean << x, y, 0.0, 0.0, 0.0, 4.4, 1.8;
-  shape.state.covariance = (TrackVector() << 0.1, 0.1, 1.0, 1.0, 0.1, 0.5, 0.2).finished().asDiagonal();
-  shape.middle_z_m = {0.8, 0.1};
-  shape.height_m = {1.5, 0.1};
-  return shape;
-}
-double residual(const LinearRow& row, const TrackShape& track) { return row.z - row.h.dot(track.state.mean); }
+using test::car;
+using test::residual;
 
 TEST(Measurements, ThoseThatMakeNoSenseSayWhy) {
   Obstacle box{{1.0, 2.0, 0.5}, 0.1, {4.0, 2.0, 1.5}, 10};

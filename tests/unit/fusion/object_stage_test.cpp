@@ -51,8 +51,8 @@ TEST_F(ObjectStageTest, EveryObstaclesIsAnsweredOnceAtItsStamp) {
   ASSERT_EQ(answers_.back()->objects.size(), 1U);
   EXPECT_TRUE(answers_.back()->objects[0].is_static);
   EXPECT_TRUE(answers_.back()->T_map_imu.has_value());
-  const ObjectSource& source = answers_.back()->objects[0].sources.at(0);
-  EXPECT_EQ(source.input, "obstacles");
+  const Origin& source = answers_.back()->objects[0].sources.at(0);
+  EXPECT_EQ(source.topic, "obstacles");
   EXPECT_EQ(source.stamp, at(1.9));
 }
 

@@ -4,20 +4,13 @@
 #include <cmath>
 
 #include "atlas/fusion/box_measurement.hpp"
+#include "track_shapes.hpp"
 
 namespace atlas {
 namespace {
 
-/// A car of 4.4 x 1.8 m at a place, heading along x.
-TrackShape car(double x, double y) {
-  TrackShape shape;
-  shape.state.mean << x, y, 0.0, 0.0, 0.0, 4.4, 1.8;
-  shape.state.covariance = (TrackVector() << 0.1, 0.1, 1.0, 1.0, 0.1, 0.5, 0.2).finished().asDiagonal();
-  shape.middle_z_m = {0.8, 0.1};
-  shape.height_m = {1.5, 0.1};
-  return shape;
-}
-double residual(const LinearRow& row, const TrackShape& track) { return row.z - row.h.dot(track.state.mean); }
+using test::car;
+using test::residual;
 
 TEST(SeenBox, OnlyTheRearOfACarIsWhereItSeems) {
   // the sensor at the origin sees 0.4 m of the rear of a car whose middle is at 20 m

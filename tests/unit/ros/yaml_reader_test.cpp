@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "atlas_ros/stage_params.hpp"
 
 namespace {
@@ -33,6 +35,21 @@ TEST(YamlReader, NamesWhatIsWrong) {
   EXPECT_NE(messageOf([&] { reader.rejectUnread(); }).find("unknown parameter"), std::string::npos);
 }
 
+TEST(Configurations, WhatIsWrongWithTheFileIsSaidWithItsName) {
+  const std::string file = testing::TempDir() + "configuration_test.yaml";
+  EXPECT_NE(messageOf([&] { (void)atlas_ros::loadConfiguration(file + ".none"); }).find(file + ".none"),
+            std::string::npos);
+  const auto messageFor = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    return messageOf([&] {
+      (void)atlas_ros::readSection<atlas::DeskewParams>(atlas_ros::loadConfiguration(file), file, "deskew");
+    });
+  };
+  EXPECT_EQ(messageFor("just words"), "configuration " + file + ": not a map of sections");
+  EXPECT_NE(messageFor("deskew: [").find("configuration " + file), std::string::npos);
+  EXPECT_EQ(messageFor("localization: {}"), file + ": deskew: missing or not a map");
+}
+
 TEST(Configurations, EveryStageSectionIsComplete) {
   for (const char* name : {"bud.yaml", "kitti.yaml"}) {
     const YAML::Node root = YAML::LoadFile(std::string(ATLAS_REPO_ROOT) + "/atlas_bringup/config/" + name);
@@ -49,6 +66,9 @@ TEST(Configurations, EveryStageSectionIsComplete) {
     check("camera_lidar", atlas::CameraLidarParams());
     check("thermal", atlas::ThermalParams());
     check("depth", atlas::DepthParams());
+    check("objects", atlas::ObjectParams());
+    check("local_map", atlas::LocalMapParams());
+    check("sensor_monitor", atlas::MonitorParams());
   }
 }
 

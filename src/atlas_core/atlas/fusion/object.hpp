@@ -13,12 +13,6 @@
 
 namespace atlas {
 
-/// A measurement that went into an object since the update before.
-struct ObjectSource {
-  std::string input;  ///< topic
-  Stamp stamp = 0;
-  std::uint32_t index = 0;  ///< of the obstacle, frustum or target in its message
-};
 /// Where an object was.
 struct ObjectPast {
   Stamp stamp = 0;
@@ -42,11 +36,11 @@ struct Object {
   double z_variance_m2 = 0.0, yaw_variance_rad2 = 0.0;
   double static_probability = 0.0;
   bool is_static = false;
-  double age_s = 0.0;          ///< since the first measurement
-  double unseen_s = 0.0;       ///< since the last one
-  double detectability = 0.0;  ///< probability that the last lidar sweep would have shown it: 0 = hidden
-  double score = 0.0;          ///< mean of the scores of its detections, where they have any
-  std::vector<ObjectSource> sources;
+  double age_s = 0.0;               ///< since the first measurement
+  double unseen_s = 0.0;            ///< since the last one
+  double detectability = 0.0;       ///< probability that the last lidar sweep would have shown it: 0 = hidden
+  double score = 0.0;               ///< mean of the scores of its detections, where they have any
+  std::vector<Origin> sources;      ///< obstacles, frustums and targets since the update before
   std::vector<ObjectPast> history;  ///< oldest first
 };
 struct Objects {

@@ -121,7 +121,7 @@ void Track::witness(const Measurement& measurement, const std::string& input) {
     score_sum_ += *measurement.score;
     ++scores_;
   }
-  sources_.push_back({input, stamp_, measurement.index});
+  sources_.push_back({input, stamp_, {}, measurement.index});
   weighClasses();
 }
 

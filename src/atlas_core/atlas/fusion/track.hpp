@@ -69,7 +69,7 @@ class Track {
   double detectability_ = 0.0;
   double score_sum_ = 0.0;
   int scores_ = 0;
-  std::vector<ObjectSource> sources_;
+  std::vector<Origin> sources_;
   std::deque<ObjectPast> history_;
 };
 
