@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "atlas/fusion/object.hpp"
+#include "atlas/sensor/object.hpp"
 #include "files/output_file.hpp"
 
 namespace atlas {

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "atlas/base/stage.hpp"
-#include "atlas/fusion/object.hpp"
+#include "atlas/sensor/object.hpp"
 #include "atlas/sensor/products.hpp"
 #include "files/output_file.hpp"
 

@@ -12,7 +12,7 @@
 #include "atlas/base/outcome.hpp"
 #include "atlas/base/stage.hpp"
 #include "atlas/base/trajectory.hpp"
-#include "atlas/fusion/object.hpp"
+#include "atlas/sensor/object.hpp"
 
 namespace atlas {
 

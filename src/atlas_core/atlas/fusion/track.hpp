@@ -9,7 +9,7 @@
 
 #include "atlas/fusion/class_belief.hpp"
 #include "atlas/fusion/measurement.hpp"
-#include "atlas/fusion/object.hpp"
+#include "atlas/sensor/object.hpp"
 
 namespace atlas {
 

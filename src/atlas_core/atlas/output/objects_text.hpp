@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "atlas/fusion/object.hpp"
+#include "atlas/sensor/object.hpp"
 
 namespace atlas {
 
