@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is told of an object (paper III-E: "geometrical shape information, object type, kinematic model, motion
-// history"): by the objects aggregator, and by the tracker of the occupancy grid.
+// What is told of an object (paper III-E: "geometrical shape information, object type, kinematic model,
+// motion history"): by the objects aggregator, and by the tracker of the occupancy grid.
 #pragma once
 
 #include <memory>
