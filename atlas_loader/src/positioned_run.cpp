@@ -14,17 +14,29 @@ namespace {
 using atlas::GnssFix;
 using atlas::ImuSample;
 
+bool isAfter(const PositionedRun& run, atlas::Stamp stamp) {
+  const atlas::Trajectory& known = run.motion.inMap();
+  return known.empty() || stamp > known.poses().back().stamp;
+}
+
+void take(const atlas::Odometry& odometry, PositionedRun& run, bool velocities) {
+  if (velocities) {
+    run.motion.push(odometry);
+  } else {
+    run.motion.push(atlas::StampedPose{odometry.stamp, odometry.T_map_imu});
+  }
+}
+
 /// The stage with its answers led into a run.
 void addPositioning(atlas::LocalGraph& graph, const atlas::LocalizationParams& params, PositionedRun& run,
-                    atlas::eskf::History* history) {
-  graph.add([&params, &run, history](atlas::LocalGraph::Bus& bus) -> atlas::StageFactory {
+                    bool velocities, atlas::eskf::History* history) {
+  graph.add([&params, &run, velocities, history](atlas::LocalGraph::Bus& bus) -> atlas::StageFactory {
     const atlas::StageFactory factory = bindLocalization(bus, params);
-    return [factory, &run, history] {
+    return [factory, &run, velocities, history] {
       auto stage = factory();
       auto& localization = static_cast<atlas::LocalizationStage&>(*stage);
-      localization.on_odometry = [&run](const atlas::Odometry& o) {
-        if (run.trajectory.empty() || o.stamp > run.trajectory.poses().back().stamp)
-          run.trajectory.push({o.stamp, o.T_map_imu});
+      localization.on_odometry = [&run, velocities](const atlas::Odometry& o) {
+        if (isAfter(run, o.stamp)) take(o, run, velocities);
       };
       localization.on_anchor = [&run](const atlas::Anchor& anchor) { run.anchor = anchor.position; };
       if (history != nullptr) localization.record(history);
@@ -33,14 +45,11 @@ void addPositioning(atlas::LocalGraph& graph, const atlas::LocalizationParams& p
   });
 }
 
-void takeSmoothed(atlas::eskf::History& history, PositionedRun& run) {
+void takeSmoothed(atlas::eskf::History& history, PositionedRun& run, bool velocities) {
   if (history.size() == 0) return;
   history.smooth();
-  run.trajectory.clear();
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    const atlas::Odometry odometry = history.odometry(i);
-    run.trajectory.push({odometry.stamp, odometry.T_map_imu});
-  }
+  run.motion = atlas::VehicleMotion();
+  for (std::size_t i = 0; i < history.size(); ++i) take(history.odometry(i), run, velocities);
 }
 
 /// Fixes and attitudes of the same stamp, by the first fix as anchor.
@@ -62,9 +71,9 @@ class RecordedPoses {
     const auto attitude = attitudes_.find(stamp);
     if (fix == fixes_.end() || attitude == attitudes_.end()) return;
     if (!run.anchor) run.anchor = fix->second;
-    if (run.trajectory.empty() || stamp > run.trajectory.poses().back().stamp) {
-      run.trajectory.push(
-          {stamp, atlas::Pose{attitude->second, atlas::LocalEnu(*run.anchor).toMap(fix->second)}});
+    if (isAfter(run, stamp)) {
+      run.motion.push(atlas::StampedPose{
+          stamp, atlas::Pose{attitude->second, atlas::LocalEnu(*run.anchor).toMap(fix->second)}});
     }
     fixes_.erase(fixes_.begin(), std::next(fix));
     attitudes_.erase(attitudes_.begin(), std::next(attitude));
@@ -83,12 +92,12 @@ PoseSource poseSourceNamed(const std::string& name) {
 }
 
 PositionedRun positionRun(const InputOptions& input, const atlas::LocalizationParams& params,
-                          PoseSource source) {
+                          PoseSource source, bool velocities) {
   PositionedRun run;
   atlas::eskf::History history;
   atlas::LocalGraph graph;
   if (source != PoseSource::kRecorded)
-    addPositioning(graph, params, run, source == PoseSource::kSmoothed ? &history : nullptr);
+    addPositioning(graph, params, run, velocities, source == PoseSource::kSmoothed ? &history : nullptr);
   RecordedPoses recorded;
   const auto reader = openInput(input);
   while (const auto event = reader->next()) {
@@ -105,7 +114,7 @@ PositionedRun positionRun(const InputOptions& input, const atlas::LocalizationPa
     }
   }
   graph.finish();
-  if (source == PoseSource::kSmoothed) takeSmoothed(history, run);
+  if (source == PoseSource::kSmoothed) takeSmoothed(history, run, velocities);
   return run;
 }
 

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "atlas/base/trajectory.hpp"
 #include "atlas/calibration/rig.hpp"
+#include "atlas/lidar/vehicle_motion.hpp"
 #include "atlas/localization/localization_stage.hpp"
 #include "open_input.hpp"
 
@@ -21,13 +21,14 @@ enum class PoseSource {
 PoseSource poseSourceNamed(const std::string& name);
 
 struct PositionedRun {
-  atlas::Trajectory trajectory;
+  atlas::VehicleMotion motion;
   atlas::Rig rig;
   std::optional<atlas::Geodetic> anchor;  ///< origin of map; nothing when there never was a pose
 };
 
-/// Throws std::invalid_argument for a filter without smoother, std::runtime_error for unreadable input.
+/// Without `velocities` the motion within a sweep is taken from the poses. Throws std::invalid_argument for a
+/// filter without smoother, std::runtime_error for unreadable input.
 PositionedRun positionRun(const InputOptions& input, const atlas::LocalizationParams& params,
-                          PoseSource source);
+                          PoseSource source, bool velocities = true);
 
 }  // namespace atlas_loader

@@ -50,12 +50,12 @@ bool moved(const std::vector<SweepPtr>& sweeps, const atlas::Trajectory& traject
 void tryWindow(const std::vector<SweepPtr>& sweeps, const PositionedRun& run, const atlas::Pose& T_imu_lidar,
                Differences& differences) {
   const auto span = atlas::spanOf(*sweeps.front());
-  if (!span || !moved(sweeps, run.trajectory)) return;
+  if (!span || !moved(sweeps, run.motion.inMap())) return;
   const std::size_t points = kSweeps * sweeps.front()->points.size();
   const atlas::MapQualityParams params{kRadius_m, 12, std::max<std::size_t>(1, points / kQueries)};
   const auto entropy = [&](atlas::Duration shift) -> std::optional<double> {
     const auto quality =
-        qualityOf(sweeps, atlas::DeskewWay::kPerPoint, run.trajectory, T_imu_lidar, params, shift);
+        qualityOf(sweeps, atlas::DeskewWay::kPerPoint, run.motion.inMap(), T_imu_lidar, params, shift);
     if (!quality || quality->neighbourhoods == 0) return std::nullopt;
     return quality->mean_entropy;
   };

@@ -47,11 +47,15 @@ class DeskewErrorsTest : public EvaluateTest {
     writeTruthPoints(folders_.truth / "points" / "lidar_left" / "000000.bin", truth);
     return sweep;
   }
+  [[nodiscard]] VehicleMotion motion(const Pose& T_moved = Pose{}) const {
+    VehicleMotion run;
+    for (const StampedPose& pose : true_.poses()) run.push(StampedPose{pose.stamp, T_moved * pose.pose});
+    return run;
+  }
   /// What is said about the sweep when the run's poses are the true ones moved by T_moved (about the map's
   /// origin).
   [[nodiscard]] nlohmann::ordered_json judged(const Pose& T_moved = Pose{}) const {
-    Trajectory run;
-    for (const StampedPose& pose : true_.poses()) run.push({pose.stamp, T_moved * pose.pose});
+    const VehicleMotion run = motion(T_moved);
     DeskewErrors errors(folders_.truth, DriveOptions().anchor, run);
     errors.add("lidar_left", 0, seen(), T_imu_lidar_);
     nlohmann::ordered_json json;
@@ -97,12 +101,13 @@ TEST_F(DeskewErrorsTest, WithoutDeskewTheSweepIsDistortedByItsMotion) {
 }
 
 TEST_F(DeskewErrorsTest, NoTruthIsNoErrorAndNoAnchorIsSaid) {
-  DeskewErrors errors(folders_.truth, DriveOptions().anchor, true_);
+  const VehicleMotion run = motion();
+  DeskewErrors errors(folders_.truth, DriveOptions().anchor, run);
   errors.add("lidar_left", 5, seen(), T_imu_lidar_);
   nlohmann::ordered_json json;
   errors.print(json);
   EXPECT_TRUE(json.empty());
-  EXPECT_THROW(DeskewErrors(base_ / "nowhere", DriveOptions().anchor, true_), std::runtime_error);
+  EXPECT_THROW(DeskewErrors(base_ / "nowhere", DriveOptions().anchor, run), std::runtime_error);
 }
 
 }  // namespace

@@ -27,10 +27,9 @@ using atlas_loader::PositionedRun;
 struct Arguments {
   atlas_loader::InputOptions input;
   std::vector<std::string> clouds;
-  std::string poses = "smoothed", truth, json;
+  std::string poses = "smoothed", motion = "velocities", truth, json;
   std::size_t sweeps = 10, stride = 1;
-  double min_range_m = 3.0, max_range_m = 40.0, min_speed_mps = 1.0, min_height_m = -1e9;
-  double cut_margin = 0.0;
+  double min_range_m = 3.0, max_range_m = 40.0, min_speed_mps = 1.0, min_height_m = -1e9, cut_margin = 0.0;
   MapQualityParams quality{0.3, 12, 0};
 };
 
@@ -119,9 +118,9 @@ struct Results {
 Results measure(const Arguments& arguments, const PositionedRun& run) {
   Results results;
   if (!arguments.truth.empty() && run.anchor)
-    results.errors.emplace(arguments.truth, *run.anchor, run.trajectory);
-  std::map<std::pair<std::string, std::size_t>, std::vector<SweepPtr>>
-      waiting;  // by topic and place in stride
+    results.errors.emplace(arguments.truth, *run.anchor, run.motion);
+  // by topic and place in stride
+  std::map<std::pair<std::string, std::size_t>, std::vector<SweepPtr>> waiting;
   std::map<std::string, int> counts;
   const auto reader = atlas_loader::openInput(arguments.input);
   while (const auto event = reader->next()) {
@@ -132,11 +131,11 @@ Results measure(const Arguments& arguments, const PositionedRun& run) {
     if (!T_imu_lidar) throw std::runtime_error(topic + ": no calibration for frame " + (*sweep)->frame);
     const int index = counts[topic]++;
     if (results.errors) results.errors->add(topic.substr(0, topic.find('/')), index, *sweep, *T_imu_lidar);
-    if (!placed(*sweep, DeskewWay::kPerPoint, run.trajectory, *T_imu_lidar)) continue;  // no poses there
+    if (!placed(*sweep, DeskewWay::kPerPoint, run.motion.inMap(), *T_imu_lidar)) continue;  // no poses there
     std::vector<SweepPtr>& sweeps = waiting[{topic, static_cast<std::size_t>(index) % arguments.stride}];
     sweeps.push_back(judged(*sweep, arguments, *T_imu_lidar));
     if (sweeps.size() < arguments.sweeps) continue;
-    const auto window = judge(sweeps, arguments, run.trajectory, *T_imu_lidar);
+    const auto window = judge(sweeps, arguments, run.motion.inMap(), *T_imu_lidar);
     if (window) results.windows[topic].push_back(*window);
     if (!window) ++results.passed_over[topic];
     sweeps.clear();
@@ -239,8 +238,8 @@ void judgeRecording(Arguments arguments, nlohmann::ordered_json& json) {
   const auto params = atlas_loader::localizationParams("", arguments.input);
   atlas_loader::InputOptions positions = arguments.input;
   positions.topics = {"tf_static", "imu/data", "imu/gnss/fix", "gnss/fix", "gnss/heading"};
-  const PositionedRun run = atlas_loader::positionRun(positions, params, source);
-  if (run.trajectory.empty()) throw std::runtime_error("no pose: position or heading never known");
+  const auto run = atlas_loader::positionRun(positions, params, source, arguments.motion == "velocities");
+  if (run.motion.inMap().empty()) throw std::runtime_error("no pose: position or heading never known");
   const Results results = measure(arguments, run);
   for (const auto& [topic, windows] : results.windows) {
     printWindows(topic, windows, json["windows"]);
@@ -261,6 +260,8 @@ int run(int argc, char** argv) {
   app.add_option("--calibration", a.input.calibration, "calibration folder of a record that carries none");
   app.add_option("--scan-stamp", a.input.scan_stamp, "of records: end or start")->capture_default_str();
   app.add_option("--poses", a.poses, "filtered, smoothed or recorded")->capture_default_str();
+  app.add_option("--motion", a.motion, "within a sweep, of the errors: velocities or poses")
+      ->check(CLI::IsMember({"velocities", "poses"}));
   app.add_option("--truth", a.truth, "RECORD/truth of a synthetic drive");
   app.add_option("--sweeps", a.sweeps, "sweeps of a window")->check(CLI::Range(2, 1000));
   app.add_option("--stride", a.stride, "every n-th sweep belongs to a window; n windows run side by side")

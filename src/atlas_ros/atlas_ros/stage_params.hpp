@@ -74,6 +74,7 @@ void readParams(Reader& reader, atlas::DeskewParams& p) {
   reader.read("min_range_m", p.min_range_m);
   reader.read("max_range_m", p.max_range_m);
   reader.read("max_pose_gap_s", p.max_pose_gap_s);
+  reader.readOptional("motion", p.motion);
   reader.readOptional("scan_stamp", p.scan_stamp);
   reader.readOptional("vehicle_box_m", p.vehicle_box_m);
   reader.readOptional("dead_rings", p.dead_rings);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "atlas/lidar/batching.hpp"
 #include "atlas/lidar/range_gate.hpp"
 #include "synthetic/evaluate.hpp"
 #include "synthetic/rigid_fit.hpp"
@@ -23,8 +24,8 @@ void addTo(std::vector<float>& values, double error_m) { values.push_back(static
 }  // namespace
 
 DeskewErrors::DeskewErrors(std::filesystem::path truth, const Geodetic& run_anchor,
-                           const Trajectory& trajectory)
-    : truth_(std::move(truth)), trajectory_(trajectory) {
+                           const VehicleMotion& motion)
+    : truth_(std::move(truth)), motion_(motion) {
   const auto anchor = readAnchor(truth_ / "anchor.json");
   if (!anchor) throw std::runtime_error(truth_.string() + ": no anchor.json of a synthetic drive");
   T_truth_run_ = betweenMaps(*anchor, run_anchor);
@@ -33,7 +34,7 @@ DeskewErrors::DeskewErrors(std::filesystem::path truth, const Geodetic& run_anch
 
 std::string DeskewErrors::motionAt(Stamp stamp) const {
   constexpr Duration kHalf = 50 * kMillisecond;
-  const auto a = trajectory_.at(stamp - kHalf), b = trajectory_.at(stamp);
+  const auto a = motion_.inMap().at(stamp - kHalf), b = motion_.inMap().at(stamp);
   if (!a || !b) return "unknown";
   const double dt_s = toSeconds(kHalf);
   if ((b->translation - a->translation).norm() < kStanding_mps * dt_s) return "standing";
@@ -46,9 +47,13 @@ void DeskewErrors::add(const std::string& lidar, int index, const SweepPtr& swee
   std::snprintf(name, sizeof name, "%06d.bin", index);
   const std::vector<TruthPoint> truth = readTruthPoints(truth_ / "points" / lidar / name);
   if (truth.size() != sweep->points.size()) return;
+  const Outcome<SweepSpan> span = spanOf(*sweep);
+  if (!span) return;
+  const Outcome<Trajectory> poses = motion_.around(sweep->stamp, span->first, span->last);
+  if (!poses) return;
   const SweepPtr gated = gateByRange(sweep, kMinRange_m, kMaxRange_m).sweep;
   for (const DeskewWay way : kDeskewWays) {
-    const auto points = placed(gated, way, trajectory_, T_imu_lidar);
+    const auto points = placed(gated, way, *poses, T_imu_lidar);
     if (!points) continue;
     Errors& errors = errors_[motionAt(sweep->stamp)][way];
     std::vector<PointPair> pairs;

@@ -11,13 +11,14 @@
 
 #include "atlas/base/geodesy.hpp"
 #include "atlas/lidar/deskew_trial.hpp"
+#include "atlas/lidar/vehicle_motion.hpp"
 
 namespace atlas::synthetic {
 
 class DeskewErrors {
  public:
-  /// `run_anchor` is the origin of the run's map, `trajectory` its poses; both must outlive this.
-  DeskewErrors(std::filesystem::path truth, const Geodetic& run_anchor, const Trajectory& trajectory);
+  /// `run_anchor` is the origin of the run's map, `motion` its poses; both must outlive this.
+  DeskewErrors(std::filesystem::path truth, const Geodetic& run_anchor, const VehicleMotion& motion);
 
   /// Scan `index` of a lidar, if there is truth for it; only what stands still counts.
   void add(const std::string& lidar, int index, const SweepPtr& sweep, const Pose& T_imu_lidar);
@@ -33,7 +34,7 @@ class DeskewErrors {
 
   std::filesystem::path truth_;
   Pose T_truth_run_;
-  const Trajectory& trajectory_;
+  const VehicleMotion& motion_;
   Stamp settled_ = 0;
   std::map<std::string, std::map<DeskewWay, Errors>> errors_;  ///< by motion
 };

@@ -173,6 +173,10 @@ TEST(Deskew, RefusesParametersByName) {
   params.max_range_m = 0.5;
   EXPECT_NE(message(params).find("max_range_m"), std::string::npos);
   params = {};
+  params.motion = "dead reckoning";
+  EXPECT_NE(message(params).find("motion must be velocities or poses, got 'dead reckoning'"),
+            std::string::npos);
+  params = {};
   params.max_pose_gap_s = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(message(params).find("max_pose_gap_s"), std::string::npos);
   params = {};

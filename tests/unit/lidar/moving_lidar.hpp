@@ -43,6 +43,10 @@ struct Drive {
       Odometry o;
       o.stamp = at(i / odometry_hz);
       o.T_map_imu = arc(i / odometry_hz);
+      const double yaw = heading_rad + yaw_rate_radps * i / odometry_hz;
+      const Eigen::Quaterniond R_imu_map = o.T_map_imu.rotation.conjugate();
+      o.velocity_imu_mps = R_imu_map * (speed_mps * Eigen::Vector3d(std::cos(yaw), std::sin(yaw), 0.0));
+      o.angular_velocity_imu_radps = R_imu_map * Eigen::Vector3d(0.0, 0.0, yaw_rate_radps);
       result.push_back(o);
     }
     return result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atlas/lidar/deskew_stage.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +16,7 @@ namespace {
 /// kMaxPointTime_s before its stamp, and its stamp is not older than that of the sweep it waits behind, whose
 /// last point is yet to come.
 constexpr Duration kPoseHistory = 2 * static_cast<Duration>(kMaxPointTime_s) * kSecond;
+constexpr double kLargeCorrection_m = 0.5;  // within a sweep: more than any fix that is believed makes
 
 std::vector<std::string> inputNames(const DeskewParams& params) {
   validate(params);
@@ -44,6 +46,8 @@ void validate(const DeskewParams& params) {
     if (ring < 0 || ring > std::numeric_limits<std::uint16_t>::max())
       refuse("dead_rings must lie in 0..65535", ring);
   }
+  if (params.motion != "velocities" && params.motion != "poses")
+    throw std::invalid_argument("deskew: motion must be velocities or poses, got '" + params.motion + "'");
   try {
     (void)scanStampNamed(params.scan_stamp);
     (void)vehicleBoxFrom(params.vehicle_box_m);
@@ -58,7 +62,7 @@ DeskewStage::DeskewStage(const DeskewParams& params)
       scan_stamp_(scanStampNamed(params.scan_stamp)),
       filter_{vehicleBoxFrom(params.vehicle_box_m), params.dead_rings, params.drop_duplicates},
       max_pose_gap_(fromSeconds(params.max_pose_gap_s)),
-      trajectory_(max_pose_gap_) {}
+      motion_(max_pose_gap_) {}
 
 void DeskewStage::push(Stamp stamp, const StaticTransforms& transforms) {
   enqueue(kTfStatic, stamp, [this, transforms] { rig_.add(transforms); });
@@ -79,26 +83,33 @@ void DeskewStage::push(std::size_t lidar, const SweepPtr& sweep) {
 
 void DeskewStage::take(const Odometry& odometry) {
   const Pose& T_map_imu = odometry.T_map_imu;
-  if (!T_map_imu.translation.allFinite() || !T_map_imu.rotation.coeffs().allFinite()) {
+  if (!T_map_imu.translation.allFinite() || !T_map_imu.rotation.coeffs().allFinite() ||
+      !odometry.velocity_imu_mps.allFinite() || !odometry.angular_velocity_imu_radps.allFinite()) {
     counters_.skip("odometry", Reason::kNotFinite);
     return;
   }
-  if (!trajectory_.empty() && odometry.stamp <= trajectory_.poses().back().stamp) {
+  const Trajectory& known = motion_.inMap();
+  if (!known.empty() && odometry.stamp <= known.poses().back().stamp) {
     counters_.skip("odometry", Reason::kOutOfOrder);
     return;
   }
   // Sweeps whose time has run out get their answer before this pose, whether or not a watermark came in
   // between.
   answerReady(odometry.stamp - 1);
-  trajectory_.push({odometry.stamp, T_map_imu});
-  trajectory_.forgetBefore(odometry.stamp - kPoseHistory);
+  if (params_.motion == "poses") {
+    motion_.push(StampedPose{odometry.stamp, T_map_imu});
+  } else {
+    motion_.push(odometry);
+  }
+  motion_.forgetBefore(odometry.stamp - kPoseHistory);
   answerReady(odometry.stamp - 1);
 }
 
 bool DeskewStage::isReady(const Waiting& waiting, Stamp odometry_known) const {
   if (!waiting.span || !waiting.T_imu_lidar) return true;  // no pose can help
   const Stamp last = waiting.span->last;
-  const bool reached = !trajectory_.empty() && trajectory_.poses().back().stamp >= last;
+  const Trajectory& known = motion_.inMap();
+  const bool reached = !known.empty() && known.poses().back().stamp >= last;
   // A later pose would be too far from the last one before `last` to interpolate.
   return reached || odometry_known >= last + max_pose_gap_;
 }
@@ -122,19 +133,29 @@ SweepPtr DeskewStage::filtered(const Waiting& waiting) {
   return result.sweep;
 }
 
+void DeskewStage::countCorrection(const Trajectory& poses, const SweepSpan& span) {
+  const auto correction_m = [&](Stamp stamp) {
+    const Outcome<Pose> moved = poses.at(stamp), in_map = motion_.inMap().at(stamp);
+    return moved && in_map ? (moved->translation - in_map->translation).norm() : 0.0;
+  };
+  if (std::max(correction_m(span.first), correction_m(span.last)) > kLargeCorrection_m)
+    counters_.add("sweeps with a jump of the position, or whose odometry has no velocities");
+}
+
+Outcome<BatchedSweep> DeskewStage::batched(const Waiting& waiting, const SweepPtr& points) {
+  if (!waiting.span) return waiting.span.reason();
+  if (!waiting.T_imu_lidar) return waiting.T_imu_lidar.reason();
+  const SweepSpan& span = *waiting.span;
+  const Outcome<Trajectory> poses = motion_.around(points->stamp, span.first, span.last);
+  if (!poses) return poses.reason();
+  countCorrection(*poses, span);
+  if (params_.batches_per_sweep == 0) return deskewPerPoint(points, span, *poses, *waiting.T_imu_lidar);
+  return cutIntoBatches(points, span, params_.batches_per_sweep, *poses, *waiting.T_imu_lidar);
+}
+
 void DeskewStage::answer(const Waiting& waiting) {
   const SweepPtr points = filtered(waiting);
-  Outcome<BatchedSweep> batched = Reason::kEmpty;
-  if (!waiting.span) {
-    batched = waiting.span.reason();
-  } else if (!waiting.T_imu_lidar) {
-    batched = waiting.T_imu_lidar.reason();
-  } else if (params_.batches_per_sweep == 0) {
-    batched = deskewPerPoint(points, *waiting.span, trajectory_, *waiting.T_imu_lidar);
-  } else {
-    batched =
-        cutIntoBatches(points, *waiting.span, params_.batches_per_sweep, trajectory_, *waiting.T_imu_lidar);
-  }
+  const Outcome<BatchedSweep> batched = this->batched(waiting, points);
   auto result = std::make_shared<BatchedSweep>();
   if (batched) {
     *result = *batched;

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "atlas/base/stage.hpp"
-#include "atlas/base/trajectory.hpp"
 #include "atlas/calibration/rig.hpp"
 #include "atlas/lidar/batching.hpp"
 #include "atlas/lidar/point_filter.hpp"
 #include "atlas/lidar/point_time.hpp"
+#include "atlas/lidar/vehicle_motion.hpp"
 #include "atlas/sensor/products.hpp"
 
 namespace atlas {
@@ -26,6 +26,7 @@ struct DeskewParams {
   double min_range_m = 1.0;     ///< nearer returns are the vehicle itself: set to NaN
   double max_range_m = 120.0;   ///< farther returns are set to NaN
   double max_pose_gap_s = 0.5;  ///< poses farther apart are not interpolated
+  std::string motion = "velocities";    ///< within a sweep: the odometry's velocities, or its "poses"
   std::string scan_stamp = "recorded";  ///< what a sweep's stamp marks: see ScanStamp
   std::vector<double> vehicle_box_m;    ///< own body in the vehicle's frame, as vehicleBoxFrom takes it
   std::vector<int> dead_rings;          ///< broken beams, left out
@@ -66,6 +67,8 @@ class DeskewStage : public Stage {
   void answerReady(Stamp odometry_known);
   [[nodiscard]] bool isReady(const Waiting& waiting, Stamp odometry_known) const;
   void answer(const Waiting& waiting);
+  [[nodiscard]] Outcome<BatchedSweep> batched(const Waiting& waiting, const SweepPtr& points);
+  void countCorrection(const Trajectory& poses, const SweepSpan& span);
   /// The points that are believed; counts the others.
   SweepPtr filtered(const Waiting& waiting);
 
@@ -74,7 +77,7 @@ class DeskewStage : public Stage {
   PointFilter filter_;
   Duration max_pose_gap_;
   Rig rig_;
-  Trajectory trajectory_;
+  VehicleMotion motion_;
   std::deque<Waiting> waiting_;  ///< in stamp order
 };
 
