@@ -24,13 +24,11 @@ struct BeamParams {
   double hit = 0.85;            ///< P(occupied) where a beam ended
   double free = 0.25;           ///< P(occupied) where a beam passed, close to the lidar
   double range_sigma_m = 0.06;  ///< noise of a range
-  double beam_width_rad =
-      0.5 * 0.017453292519943295;  ///< of one beam: what lies between two was asked by both
-  double max_range_m = 60.0;       ///< free says nothing beyond
-  double trusted_m = 20.0;         ///< up to here a beam without return passed
-  double min_height_m = 0.25;      ///< above the road: lower returns are the road's
-  double slope_sigma = 0.01;       ///< the road's height is this uncertain per metre of distance
-  double max_height_m = 2.0;       ///< above the road: higher returns are no obstacle
+  double max_range_m = 60.0;    ///< free says nothing beyond
+  double trusted_m = 20.0;      ///< up to here a beam without return passed
+  double min_height_m = 0.25;   ///< above the road: lower returns are the road's
+  double slope_sigma = 0.01;    ///< the road's height is this uncertain per metre of distance
+  double max_height_m = 2.0;    ///< above the road: higher returns are no obstacle
   double sure_free_height_m =
       0.7;                    ///< beams up to here above the road say free in full, at max_height_m nothing
   double layer_weight = 1.0;  ///< exponent of each layer in the product; less where layers err together
@@ -51,7 +49,8 @@ struct LidarEvidence {
   std::vector<float> top_m;     ///< highest return in the cell above the road, NaN without one
 };
 
-/// Keeps its buffers between sweeps.
+/// Keeps its buffers between sweeps. The evidence is added up in polar cells around the lidar (0.25 deg by
+/// half a cell), as the logarithm of the odds, and each cell of the grid gathers those that it covers.
 class BeamModel {
  public:
   explicit BeamModel(const BeamParams& params);
@@ -60,8 +59,24 @@ class BeamModel {
                                 RowWorkers& workers);
 
  private:
-  struct Bins;
+  /// One layer by azimuth.
+  struct Bins {
+    std::vector<float> seen_to_m;      ///< up to here beams passed, 0: none was sent
+    std::vector<float> start_m, rise;  ///< height above the road of the beam: start + rise * range
+    std::vector<float> end_m, hit;     ///< range of an obstacle, 0: none; how surely it is one, 0..1
+  };
+  void fillBins(const LidarLayer& layer, const Pose& T_map_lidar, const RoadPlane& road);
+  [[nodiscard]] double rangeSigma() const;  ///< s of the equations, m
+  [[nodiscard]] double hitReach() const;    ///< a of the equations, m
+  void addPassed(int ranges, RowWorkers& workers);
+  void addHits(int ranges);
+  void gather(int row, const GridGeometry& geometry, const Eigen::Vector2d& lidar_map, int ranges);
+  void noteTops(const LidarLayers& lidar, const RoadPlane& road, const GridGeometry& geometry);
+
   BeamParams params_;
+  double step_m_ = 0;  ///< of the polar cells
+  Bins bins_;
+  std::vector<float> log_odds_;  ///< [range * azimuths + azimuth]
   LidarEvidence evidence_;
 };
 

@@ -8,12 +8,13 @@
 // until they are merged; it falls while each has a cluster of its own.
 #pragma once
 
-#include <memory>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "atlas/base/counters.hpp"
-#include "atlas/grid/cell_estimates.hpp"
-#include "atlas/grid/grid_geometry.hpp"
+#include "atlas/grid/cell_clusters.hpp"
+#include "atlas/grid/cluster_track.hpp"
 #include "atlas/sensor/object.hpp"
 
 namespace atlas {
@@ -50,20 +51,35 @@ struct GridView {
 class ClusterTracker {
  public:
   explicit ClusterTracker(const ClusterTrackParams& params);
-  ~ClusterTracker();
 
   void update(const GridView& view, Counters& counters);
   void reset();
   /// Confirmed tracks by id, as of the last update.
   [[nodiscard]] Objects report() const;
-  /// Number of the cluster of each cell in the last update, 0 = none; those of confirmed tracks are negative,
-  /// -id.
-  [[nodiscard]] const std::vector<std::int32_t>& clusterOfCell() const;
+  /// Number of the cluster of each cell in the last update, 0 = none; those of tracks are negative, -id.
+  [[nodiscard]] const std::vector<std::int32_t>& clusterOfCell() const { return cluster_of_cell_; }
 
  private:
-  struct State;
+  using Pair = std::pair<std::size_t, std::size_t>;  ///< of tracks, the older one first
+  [[nodiscard]] bool alike(const Cluster& cluster, const ClusterTrack& track) const;
+  [[nodiscard]] std::vector<std::vector<std::size_t>> claims(const std::vector<Cluster>& clusters) const;
+  void shareAmong(const Cluster& cluster, const std::vector<std::size_t>& claimants, bool wall,
+                  std::vector<Cluster>& observed) const;
+  void addPartsOfWholes(const GridView& view, std::vector<Pair>& ambiguous) const;
+  void believe(const std::vector<Pair>& ambiguous, const std::vector<Cluster>& observed);
+  [[nodiscard]] bool oneThing(const ClusterTrack& a, const ClusterTrack& b) const;
+  void merge(std::vector<Cluster>& observed, Counters& counters);
+  void correct(const GridView& view, const std::vector<Cluster>& observed);
+  void begin(const std::vector<const Cluster*>& unclaimed, const GridView& view);
+  void end(const GridView& view, Counters& counters);
+
   ClusterTrackParams params_;
-  std::unique_ptr<State> state_;
+  std::vector<ClusterTrack> tracks_;                                ///< by id
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> same_;  ///< P(S) by ids, the smaller first
+  std::uint32_t next_id_ = 1;
+  Stamp stamp_ = 0;
+  double road_m_ = 0;
+  std::vector<std::int32_t> cluster_of_cell_;
 };
 
 }  // namespace atlas

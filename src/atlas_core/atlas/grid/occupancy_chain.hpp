@@ -25,7 +25,8 @@ struct OccupancyParams {
   double max_gap_s = 1.0;           ///< longer without any measurement: the grid begins anew
   double max_odometry_age_s = 0.1;  ///< of the vehicle's motion, for the risk
   double road_below_imu_m = 0.9;    ///< height of base_link above the road
-  int threads = 1;                  ///< results do not depend on it
+  double unknown_above = 0.5;  ///< a cell whose belief rests on no measurement by more is told as unknown
+  int threads = 1;             ///< results do not depend on it
   GridParams grid;
   LayerParams layers;
   BeamParams beams;
@@ -66,18 +67,26 @@ using OccupancyFramePtr = std::shared_ptr<const OccupancyFrame>;
 class OccupancyChain {
  public:
   explicit OccupancyChain(const OccupancyParams& params);
-  ~OccupancyChain();
 
-  /// Stamps must rise; one that does not is counted and answered without cells. With no measurement at all
+  /// Stamps must not fall; one that does is counted and answered without cells. With no measurement at all
   /// the belief is only predicted.
   [[nodiscard]] OccupancyFramePtr update(const OccupancyInput& input, Counters& counters);
   /// Forgets everything; ids go on.
   void reset();
 
  private:
-  struct Parts;
+  [[nodiscard]] RoadPlane roadUnder(const Pose& T_map_imu, double dt_s);
+  void look(const OccupancyInput& input, const RoadPlane& road, OccupancyFrame& frame, Counters& counters);
+
   OccupancyParams params_;
-  std::unique_ptr<Parts> parts_;
+  RowWorkers workers_;
+  BeamModel beams_;
+  PooledGrid pooled_;
+  std::unique_ptr<OccupancyFilter> filter_;
+  ClusterTracker tracker_;
+  std::optional<Stamp> last_;
+  std::optional<Eigen::Vector2d> road_slope_;
+  std::vector<float> top_m_;
 };
 
 }  // namespace atlas

@@ -26,6 +26,7 @@ struct FilterParams {
   double static_share = 0.5;        ///< of a thing that shows up where nothing was known: it stands
   double static_share_free = 0.05;  ///< where it was free: something came here
   double birth_per_s = 0.4;         ///< an empty cell becomes occupied
+  double vanish_per_s = 0.2;        ///< an occupied cell becomes empty, beside what moves away
   double change_per_s = 0.2;        ///< something takes up any other velocity
   double accelerate_per_s = 0.4;    ///< something moving takes up the next velocity, each of the four ways
   double start_per_s = 0.04;        ///< something standing takes up a lowest velocity, each of the four

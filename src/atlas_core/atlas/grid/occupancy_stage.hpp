@@ -47,6 +47,7 @@ class OccupancyStage : public Stage {
   };
   Group& groupFor(Stamp stamp);
   void closeBefore(Stamp stamp);
+  void close();
   void answerReady(Stamp odometry_known);
   void answer(const Group& group);
 

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "atlas/grid/fast_clustering.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "atlas/grid/share_out.hpp"
+
+namespace atlas {
+namespace {
+
+constexpr double kCoreMargin_m = 0.25;  ///< around a predicted box: a cell and its noise
+constexpr double kAlike_sq = 9.0;       ///< Mahalanobis distance of velocities that may be the same
+
+void need(bool condition, const std::string& what, double value) {
+  if (!condition) throw std::invalid_argument("grid objects: " + what + ", got " + std::to_string(value));
+}
+
+struct ClusterMean {
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
+  double variance = 0;
+};
+
+ClusterMean meanOf(const Cluster& cluster) {
+  ClusterMean mean;
+  for (const ClusterCell& cell : cluster) {
+    mean.velocity += cell.velocity;
+    mean.variance += cell.variance;
+  }
+  const auto count = static_cast<double>(cluster.size());
+  mean.velocity /= count;
+  mean.variance /= count;
+  return mean;
+}
+
+bool touches(const Cluster& cluster, const GroundBox& box) {
+  return std::any_of(cluster.begin(), cluster.end(),
+                     [&](const ClusterCell& cell) { return contains(box, cell.position); });
+}
+
+}  // namespace
+
+void validate(const ClusterTrackParams& p) {
+  need(p.occupied > 0.5 && p.occupied < 1.0, "occupied must lie in (0.5, 1)", p.occupied);
+  need(p.velocity_gate_mps > 0.0, "velocity_gate_mps must be positive", p.velocity_gate_mps);
+  need(p.min_cells >= 1, "min_cells must be at least 1", p.min_cells);
+  need(p.max_length_m > 0.0, "max_length_m must be positive", p.max_length_m);
+  need(p.region_margin_m >= 0.0, "region_margin_m must not be negative", p.region_margin_m);
+  for (const auto& [name, value] : {std::pair<const char*, double>{"ambiguous_same", p.ambiguous_same},
+                                    {"ambiguous_different", p.ambiguous_different},
+                                    {"initial_same", p.initial_same},
+                                    {"merge_above", p.merge_above}})
+    need(value > 0.0 && value < 1.0, std::string(name) + " must lie in (0, 1)", value);
+  need(p.ambiguous_same > p.ambiguous_different, "ambiguous_same must exceed ambiguous_different",
+       p.ambiguous_same);
+  need(p.acceleration_mps2 > 0.0, "acceleration_mps2 must be positive", p.acceleration_mps2);
+  need(p.confirm_hits >= 1 && p.confirm_hits <= p.confirm_of && p.confirm_of <= 16,
+       "confirm_hits must lie in [1, confirm_of], confirm_of at most 16", p.confirm_hits);
+  need(p.lost_visible_s > 0.0, "lost_visible_s must be positive", p.lost_visible_s);
+  need(p.lost_hidden_s >= p.lost_visible_s, "lost_hidden_s must not be below lost_visible_s",
+       p.lost_hidden_s);
+  need(p.static_speed_mps >= 0.0, "static_speed_mps must not be negative", p.static_speed_mps);
+}
+
+ClusterTracker::ClusterTracker(const ClusterTrackParams& params) : params_(params) { validate(params); }
+
+void ClusterTracker::reset() {
+  tracks_.clear();
+  same_.clear();
+  cluster_of_cell_.clear();
+}
+
+bool ClusterTracker::alike(const Cluster& cluster, const ClusterTrack& track) const {
+  const ClusterMean mean = meanOf(cluster);
+  const double difference_sq = (mean.velocity - track.velocity()).squaredNorm();
+  const double variance = mean.variance + std::max(track.covariance()(2, 2), track.covariance()(3, 3));
+  return difference_sq <=
+         std::max(params_.velocity_gate_mps * params_.velocity_gate_mps, kAlike_sq * variance);
+}
+
+/// Tracks that claim each cluster: those whose predicted box it touches, and of the tracks that touch none in
+/// that way, those whose region it touches.
+std::vector<std::vector<std::size_t>> ClusterTracker::claims(const std::vector<Cluster>& clusters) const {
+  std::vector<std::vector<std::size_t>> claimed(clusters.size());
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const ClusterTrack& track = tracks_[t];
+    GroundBox core = track.box();
+    core.length += 2.0 * kCoreMargin_m;
+    core.width += 2.0 * kCoreMargin_m;
+    const GroundBox region = track.region(params_.region_margin_m);
+    bool any = false;
+    for (const GroundBox& box : {core, region}) {
+      for (std::size_t c = 0; c < clusters.size() && (!any || &box != &region); ++c) {
+        if (!touches(clusters[c], box) || !alike(clusters[c], track)) continue;
+        claimed[c].push_back(t);
+        any = true;
+      }
+      if (any) break;
+    }
+  }
+  return claimed;
+}
+
+/// Each track gets the cells nearest to it; of a wall only those in its own region.
+void ClusterTracker::shareAmong(const Cluster& cluster, const std::vector<std::size_t>& claimants, bool wall,
+                                std::vector<Cluster>& observed) const {
+  std::vector<Eigen::Vector4d> seeds;
+  for (const std::size_t t : claimants) seeds.push_back(tracks_[t].state());
+  const std::vector<std::size_t> owner = shareOut(cluster, seeds);
+  for (std::size_t i = 0; i < cluster.size(); ++i) {
+    const std::size_t t = claimants[owner[i]];
+    if (!wall || contains(tracks_[t].region(params_.region_margin_m), cluster[i].position))
+      observed[t].push_back(cluster[i]);
+  }
+}
+
+void ClusterTracker::update(const GridView& view, Counters& counters) {
+  stamp_ = view.stamp;
+  road_m_ = view.road_m;
+  for (ClusterTrack& track : tracks_) track.predict(view.stamp, params_.acceleration_mps2);
+  CellClusters found = clusterCells({view.geometry, view.cells, view.evidence, view.top_m}, params_.occupied,
+                                    params_.velocity_gate_mps);
+  std::vector<Cluster> observed(tracks_.size());
+  std::vector<const Cluster*> unclaimed;
+  std::vector<Pair> ambiguous;
+  const auto claimed = claims(found.clusters);
+  for (std::size_t c = 0; c < found.clusters.size(); ++c) {
+    const Cluster& cluster = found.clusters[c];
+    const bool wall = principalBox(cluster, view.geometry.cell_m).length > params_.max_length_m;
+    if (claimed[c].empty() && !wall) unclaimed.push_back(&cluster);
+    if (claimed[c].empty()) continue;
+    shareAmong(cluster, claimed[c], wall, observed);
+    for (std::size_t i = 0; i < claimed[c].size() && !wall; ++i) {
+      for (std::size_t j = i + 1; j < claimed[c].size(); ++j)
+        ambiguous.emplace_back(claimed[c][i], claimed[c][j]);
+    }
+  }
+  addPartsOfWholes(view, ambiguous);
+  believe(ambiguous, observed);
+  merge(observed, counters);
+  correct(view, observed);
+  cluster_of_cell_ = std::move(found.cluster_of_cell);
+  for (std::size_t t = 0; t < observed.size(); ++t) {
+    for (const ClusterCell& cell : observed[t])
+      cluster_of_cell_[cell.index] = -static_cast<std::int32_t>(tracks_[t].id());
+  }
+  begin(unclaimed, view);
+  end(view, counters);
+}
+
+Objects ClusterTracker::report() const {
+  Objects objects;
+  objects.stamp = stamp_;
+  for (const ClusterTrack& track : tracks_) {
+    if (track.confirmed()) objects.objects.push_back(track.report(road_m_, params_.static_speed_mps));
+  }
+  return objects;
+}
+
+}  // namespace atlas
