@@ -6,19 +6,12 @@
 #include <utility>
 
 #include "atlas/output/depth_png.hpp"
-#include "files/output_file.hpp"
+#include "files/png_file.hpp"
 
 namespace atlas {
 namespace {
 
 constexpr double kPreviewRange = 60.0;  // m, darkest grey of the preview
-
-void writePng(const std::filesystem::path& path, const cv::Mat& image) {
-  const std::vector<std::uint8_t> bytes = encodePng(image);
-  OutputFile file(path);
-  file.write(bytes.data(), bytes.size());
-  file.commit();
-}
 
 }  // namespace
 

@@ -2,12 +2,11 @@
 #include "overlay_writer.hpp"
 
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "atlas/output/overlay.hpp"
-#include "output_file.hpp"
+#include "files/png_file.hpp"
 
 namespace atlas {
 namespace {
@@ -92,15 +91,9 @@ void OverlayWriterStage::write(std::size_t camera, const Picture& picture) {
                    Reason::kBadLayout);  // the image has another size than its camera_info
   }
   if (picture.frustums) canvas = drawFrustums(canvas, *picture.frustums);
-  std::vector<unsigned char> png;
-  cv::imencode(".png", canvas, png, {cv::IMWRITE_PNG_COMPRESSION, 1});
   char name[32];
   std::snprintf(name, sizeof name, "%06u.png", picture.index);
-  const std::filesystem::path folder = out_ / "overlay" / params_.cameras[camera];
-  std::filesystem::create_directories(folder);
-  OutputFile file(folder / name);
-  file.write(png.data(), png.size());
-  file.commit();
+  writePng(out_ / "overlay" / params_.cameras[camera] / name, canvas);
   counters_.add("overlays");
   if (!on_overlay) return;
   auto overlay = std::make_shared<Image>();

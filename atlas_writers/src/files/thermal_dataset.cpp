@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "atlas/output/coco_names.hpp"
-#include "atlas/output/depth_png.hpp"
 #include "atlas/output/detections_csv.hpp"
 #include "atlas/output/fixed_text.hpp"
 #include "atlas/output/label_check.hpp"
 #include "atlas/output/radiometric_png.hpp"
 #include "atlas/output/yolo.hpp"
+#include "files/png_file.hpp"
 
 namespace atlas {
 namespace {
@@ -23,13 +23,6 @@ std::string numbered(std::uint32_t index, const char* ending) {
   char name[32];
   std::snprintf(name, sizeof name, "%06u.%s", index, ending);
   return name;
-}
-
-void writePng(const fs::path& path, const cv::Mat& pixels) {
-  const std::vector<std::uint8_t> png = encodePng(pixels);
-  OutputFile file(path);
-  file.write(png.data(), png.size());
-  file.commit();
 }
 
 /// What the usual YOLO trainers are pointed at.

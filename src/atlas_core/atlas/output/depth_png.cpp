@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
+#include <cstdint>
 
 namespace atlas {
 namespace {
@@ -38,15 +37,6 @@ cv::Mat depthPreview(const cv::Mat& depth_m, double max_depth_m) {
     }
   }
   return grey;
-}
-
-std::vector<std::uint8_t> encodePng(const cv::Mat& image) {
-  if (image.empty()) throw std::invalid_argument("PNG: image must have pixels, got 0 x 0");
-  std::vector<std::uint8_t> bytes;
-  // OpenCV's own defaults (filter SUB, runs only, zlib level 1): half the time of any level that is asked for
-  // by number, which makes it try all filters on every row, and no larger for depth and thermal images.
-  cv::imencode(".png", image, bytes);
-  return bytes;
 }
 
 }  // namespace atlas

@@ -3,9 +3,7 @@
 // unknown.
 #pragma once
 
-#include <cstdint>
 #include <opencv2/core/mat.hpp>
-#include <vector>
 
 namespace atlas {
 
@@ -14,8 +12,5 @@ namespace atlas {
 cv::Mat depthTo16Bit(const cv::Mat& depth_m);
 /// CV_8UC1 for the eye: 255 near, falling to 1 at max_depth_m and beyond; 0 = unknown.
 cv::Mat depthPreview(const cv::Mat& depth_m, double max_depth_m);
-/// PNG bytes of an 8- or 16-bit image, fast rather than small. Throws std::invalid_argument for an empty
-/// image.
-std::vector<std::uint8_t> encodePng(const cv::Mat& image);
 
 }  // namespace atlas
