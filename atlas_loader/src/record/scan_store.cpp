@@ -8,13 +8,12 @@
 #include <fstream>
 #include <map>
 
+#include "record/scan_zip.hpp"
 #include "record/text_rows.hpp"
 
 namespace atlas::record {
 namespace {
 namespace fs = std::filesystem;
-constexpr std::size_t kMaxScan = 256u << 20;  // bytes unpacked: stops a damaged or hostile member
-
 class FolderStore : public ScanStore {
  public:
   FolderStore(const fs::path& folder, std::string place) : place_(std::move(place)) {
@@ -56,10 +55,11 @@ struct ArchiveClose {
 };
 using ArchivePtr = std::unique_ptr<archive, ArchiveClose>;
 
-/// Walks the members forwards (skipping one costs a header) and starts again when an earlier one is wanted.
-class ZipStore : public ScanStore {
+/// An archive without its directory, which is at its end: walks the members forwards (skipping one costs a
+/// header) and starts again when an earlier one is wanted.
+class CutZipStore : public ScanStore {
  public:
-  explicit ZipStore(fs::path path) : path_(std::move(path)) {
+  explicit CutZipStore(fs::path path) : path_(std::move(path)) {
     std::uint32_t member = 0;
     open();
     while (archive_entry* entry = nextEntry()) {
@@ -154,7 +154,8 @@ std::unique_ptr<ScanStore> openScanStore(const fs::path& sensor_folder) {
     if (!store->indices().empty()) return store;
   }
   if (fs::is_regular_file(sensor_folder / "scans.zip", error)) {
-    return std::make_unique<ZipStore>(sensor_folder / "scans.zip");
+    auto store = openScanZip(sensor_folder / "scans.zip");
+    return store ? std::move(store) : std::make_unique<CutZipStore>(sensor_folder / "scans.zip");
   }
   return nullptr;
 }

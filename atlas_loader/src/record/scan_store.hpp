@@ -3,6 +3,7 @@
 // scans.zip (read in place, never unpacked).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -11,6 +12,8 @@
 #include <vector>
 
 namespace atlas::record {
+
+constexpr std::size_t kMaxScan = 256u << 20;  ///< bytes unpacked: stops a damaged or hostile file
 
 struct ScanBytes {
   std::string bytes;
