@@ -67,12 +67,26 @@ std::int32_t offsetOfMinimum(int before, int least, int after) {
 
 }  // namespace
 
-DisparityChoice::DisparityChoice(int width, int lanes, int range_px, const ChoiceParams& params)
-    : width_(width), lanes_(lanes), range_px_(range_px), params_(params) {
+void validate(const ChoiceParams& params) {
+  const auto check = [](const std::string& field, int value, int most) {
+    if (value < 0 || value > most)
+      throw std::invalid_argument("disparity choice: " + field + " must be in 0.." + std::to_string(most) +
+                                  ", got " + std::to_string(value));
+  };
+  check("uniqueness_percent", params.uniqueness_percent, 100);
+  check("max_left_right_px", params.max_left_right_px, 256);
+}
+
+DisparityChoice::DisparityChoice(int width, const ChoiceLanes& lanes, const ChoiceParams& params)
+    : width_(width),
+      lanes_(lanes.count),
+      offset_(lanes.of_zero),
+      range_lanes_(lanes.allowed),
+      params_(params) {
   best_.resize(static_cast<std::size_t>(width));
   best_cost_.resize(best_.size());
   second_cost_.resize(best_.size());
-  right_best_.resize(best_.size() + static_cast<std::size_t>(lanes));
+  right_best_.resize(best_.size() + static_cast<std::size_t>(lanes_));
   right_cost_.resize(right_best_.size());
   chosen_.resize(best_.size());
 }
@@ -111,13 +125,13 @@ void DisparityChoice::chooseOf(const std::uint16_t* costs) {
   for (int x = 0; x < width_; ++x) {
     const std::size_t at = static_cast<std::size_t>(x);
     const int best = best_[at], least = best_cost_[at];
-    chosen_[at] = kNoDisparity;
-    if (best > x || best >= range_px_) continue;  // outside the right image
+    chosen_[at] = kNoChoice;
+    if (best - offset_ > x || best >= range_lanes_) continue;  // outside the right image
     const int back = right_best_[static_cast<std::size_t>(width_ - 1 - x + best)];
     if (std::abs(back - best) > params_.max_left_right_px) continue;
-    if (second_cost_[at] * 100 < least * (100 + params_.uniqueness_percent)) continue;
+    if (second_cost_[at] * 100 <= least * (100 + params_.uniqueness_percent)) continue;
     const std::uint16_t* cost = costs + static_cast<std::ptrdiff_t>(x) * Lanes;
-    chosen_[at] = best * kDisparityScale;
+    chosen_[at] = (best - offset_) * kDisparityScale;
     if (best > 0 && best < Lanes - 1) chosen_[at] += offsetOfMinimum(cost[best - 1], least, cost[best + 1]);
   }
 }

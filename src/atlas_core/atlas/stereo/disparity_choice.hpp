@@ -10,27 +10,40 @@
 namespace atlas {
 
 struct ChoiceParams {
-  int uniqueness_percent = 25;  ///< by which the cost of any other disparity must be greater
+  int uniqueness_percent = 50;  ///< by which the cost of any other disparity must be greater
   int max_left_right_px = 1;    ///< difference between the two views, of the images that are matched
 };
 
+/// Throws std::invalid_argument that names the field and its value.
+void validate(const ChoiceParams& params);
+
 /// Of no disparity.
 constexpr std::int32_t kNoDisparity = -1;
+/// No lane was chosen.
+constexpr std::int32_t kNoChoice = INT32_MIN;
 
-/// Costs of one row: [pixel * lanes + disparity]. Buffers are kept from row to row.
+/// What the costs of a pixel belong to: lane k to disparity k - of_zero.
+struct ChoiceLanes {
+  int count = 64;    ///< 16, 32, 64, 128 or 256
+  int of_zero = 0;   ///< the lane of disparity 0
+  int allowed = 64;  ///< lanes from here on are not chosen
+};
+
+/// Costs of one row: [pixel * lanes + lane]. Buffers are kept from row to row.
 class DisparityChoice {
  public:
-  /// `lanes`: 16, 32, 64, 128 or 256. Disparities from `range_px` on are not chosen.
-  DisparityChoice(int width, int lanes, int range_px, const ChoiceParams& params);
+  DisparityChoice(int width, const ChoiceLanes& lanes, const ChoiceParams& params);
 
-  /// Disparity of each pixel in 1/256 px, or kNoDisparity. Valid until the next call.
+  /// Disparity of each pixel in 1/256 px, or kNoChoice. Valid until the next call.
   const std::vector<std::int32_t>& choose(const std::uint16_t* costs);
+  /// Least cost of each pixel of the row that was chosen last.
+  [[nodiscard]] const std::vector<std::uint16_t>& costs() const { return best_cost_; }
 
  private:
   template <int Lanes>
   void chooseOf(const std::uint16_t* costs);
 
-  int width_, lanes_, range_px_;
+  int width_, lanes_, offset_, range_lanes_;
   ChoiceParams params_;
   std::vector<std::uint16_t> best_, best_cost_, second_cost_;  ///< by pixel of the left image
   std::vector<std::uint16_t> right_best_, right_cost_;  ///< by pixel of the right image, from right to left

@@ -24,7 +24,7 @@ enum class SurfaceLabel : std::uint8_t { kUnknown = 0, kObstacle = 1, kRoad = 2 
 struct DisparityImage {
   cv::Mat disparity;  ///< CV_16UC1, px * kDisparityScale, 0 = unknown
   cv::Mat surface;    ///< CV_8UC1 of SurfaceLabel; what has no disparity is unknown
-  /// The road that the labels were told by; without one every pixel with a disparity is an obstacle.
+  /// As it is in this image; without one every pixel with a disparity is an obstacle.
   std::optional<RoadProfile> road;
 };
 

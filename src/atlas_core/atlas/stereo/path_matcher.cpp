@@ -5,14 +5,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "atlas/stereo/hypothesis_windows.hpp"
 #include "atlas/stereo/path_kernels.hpp"
 
 namespace atlas {
 namespace {
 
-constexpr int kRoadLanes = 16;   // disparities around the road's that its hypothesis is tried at
-constexpr int kRoadMiddle = 8;   // the lane that has the road's own disparity
-constexpr int kRatioSteps = 16;  // of a disparity, between two lanes
+constexpr int kRatioSteps = 16;                         // of a disparity, between two lanes
+constexpr std::size_t kRing = 2 * kLabelReachRows + 2;  // rows whose costs are kept
 constexpr std::uint8_t kNever = 0xFF;
 
 using Bytes = std::vector<std::uint8_t>;
@@ -64,10 +64,7 @@ void validate(const PathParams& params) {
     reject("small_step_cost", "in 0..30", params.small_step_cost);
   if (params.large_step_cost < params.small_step_cost || params.large_step_cost > 100)
     reject("large_step_cost", "in small_step_cost..100", params.large_step_cost);
-  if (params.choice.uniqueness_percent < 0 || params.choice.uniqueness_percent > 100)
-    reject("uniqueness_percent", "in 0..100", params.choice.uniqueness_percent);
-  if (params.choice.max_left_right_px < 0)
-    reject("max_left_right_px", "at least 0", params.choice.max_left_right_px);
+  validate(params.choice);
 }
 
 class PathMatcher::Rows {
@@ -83,7 +80,8 @@ class PathMatcher::RowsOf : public PathMatcher::Rows {
       : size_(size),
         steps_{static_cast<std::uint8_t>(params.small_step_cost),
                static_cast<std::uint8_t>(params.large_step_cost)},
-        choice_(size.width, Lanes, range_px, params.choice) {
+        choice_(size.width, {Lanes, 0, range_px}, params.choice),
+        windows_(size.width, Lanes) {
     const std::size_t width = static_cast<std::size_t>(size.width);
     for (auto& row : raw_) row.resize(width * Lanes);
     for (auto& row : road_raw_) row.resize(width * kRoadLanes);
@@ -97,28 +95,33 @@ class PathMatcher::RowsOf : public PathMatcher::Rows {
 
   PathMatch match(const CensusImage& left, const CensusImage& right, const RoadCensus* road) override {
     start();
-    PathMatch result{cv::Mat(size_, CV_32SC1), cv::Mat(size_, CV_8SC1, cv::Scalar(kNotRoad))};
-    for (int v = 0; v < size_.height; ++v) {
-      for (int ahead = v == 0 ? 0 : v + 1; ahead <= std::min(v + 1, size_.height - 1); ++ahead)
-        compareRow(left, right, road, ahead);
-      const bool on_road = costsOfRow(road, v);
-      const std::uint8_t* costs = on_road ? lesser_.data() + kRoadLanes : frontal_.data();
-      path::pathFromAbove<Lanes, 0>(costs, steps_, size_.width, sums_[0].data(), least_[0].data(),
-                                    total_.data());
-      path::pathFromAbove<Lanes, -1>(costs, steps_, size_.width, sums_[1].data(), least_[1].data(),
-                                     total_.data());
-      path::pathFromAbove<Lanes, 1>(costs, steps_, size_.width, sums_[2].data(), least_[2].data(),
-                                    total_.data());
-      path::pathsAlongRow<Lanes>(costs, steps_, size_.width, total_.data());
-      const auto& chosen = choice_.choose(total_.data());
-      std::copy(chosen.begin(), chosen.end(), result.disparity.ptr<std::int32_t>(v));
-      if (on_road) compareHypotheses(chosen, result.road_evidence.ptr<std::int8_t>(v));
+    constexpr auto kThing = static_cast<std::uint8_t>(SurfaceLabel::kObstacle);
+    PathMatch result{cv::Mat(size_, CV_32SC1), cv::Mat(size_, CV_8UC1, cv::Scalar(0))};
+    for (int ahead = 0; ahead < size_.height + kLabelReachRows; ++ahead) {
+      if (ahead < size_.height) compareRow(left, right, road, ahead);
+      const int v = ahead - 1;  // the row above and below are there
+      if (v >= 0 && v < size_.height) {
+        const auto& chosen = matchRow(road, v);
+        std::transform(chosen.begin(), chosen.end(), result.disparity.ptr<std::int32_t>(v),
+                       [](std::int32_t d) { return d == kNoChoice ? kNoDisparity : std::max(d, 0); });
+      }
+      if (road != nullptr) moveWindows(ahead);
+      const int middle = ahead - kLabelReachRows;
+      if (middle < 0) continue;
+      const std::int32_t* disparity = result.disparity.ptr<std::int32_t>(middle);
+      std::uint8_t* surface = result.surface.ptr<std::uint8_t>(middle);
+      const double road_px = road == nullptr ? -1.0 : road->road.disparityAt(middle);
+      if (road_px >= 0.0)
+        windows_.label(disparity, road_px, surface);
+      else
+        for (int x = 0; x < size_.width; ++x) surface[x] = disparity[x] < 0 ? 0 : kThing;
     }
     return result;
   }
 
  private:
   void start() {
+    windows_.clear();
     constexpr std::size_t kStride = Lanes + 2 * path::kMargin;
     for (std::size_t k = 0; k < sums_.size(); ++k) {
       least_[k].assign(static_cast<std::size_t>(size_.width), 0);
@@ -129,10 +132,31 @@ class PathMatcher::RowsOf : public PathMatcher::Rows {
     }
   }
 
+  const std::vector<std::int32_t>& matchRow(const RoadCensus* road, int v) {
+    const bool on_road = costsOfRow(road, v);
+    const std::uint8_t* costs = on_road ? lesser_.data() + kRoadLanes : frontal_.data();
+    path::pathFromAbove<Lanes, 0>(costs, steps_, size_.width, sums_[0].data(), least_[0].data(),
+                                  total_.data());
+    path::pathFromAbove<Lanes, -1>(costs, steps_, size_.width, sums_[1].data(), least_[1].data(),
+                                   total_.data());
+    path::pathFromAbove<Lanes, 1>(costs, steps_, size_.width, sums_[2].data(), least_[2].data(),
+                                  total_.data());
+    path::pathsAlongRow<Lanes>(costs, steps_, size_.width, total_.data());
+    return choice_.choose(total_.data());
+  }
+
+  /// The windows whose last row is `last`.
+  void moveWindows(int last) {
+    const auto row = [](auto& rows, int v) { return rows[static_cast<std::size_t>(v) % kRing].data(); };
+    if (last < size_.height) windows_.add(row(raw_, last), row(road_raw_, last));
+    const int gone = last - 2 * kLabelReachRows - 1;
+    if (gone >= 0) windows_.remove(row(raw_, gone), row(road_raw_, gone));
+  }
+
   /// Costs of single pixels of a row, by both hypotheses.
   void compareRow(const CensusImage& left, const CensusImage& right, const RoadCensus* road, int v) {
     const std::uint8_t *low = left.low.ptr<std::uint8_t>(v), *high = left.high.ptr<std::uint8_t>(v);
-    const std::size_t ring = static_cast<std::size_t>(v) % raw_.size();
+    const std::size_t ring = static_cast<std::size_t>(v) % kRing;
     reverseRow(right.low.ptr<std::uint8_t>(v), size_.width, 0, Lanes, reversed_low_);
     reverseRow(right.high.ptr<std::uint8_t>(v), size_.width, 0, Lanes, reversed_high_);
     path::compare<Lanes>(low, high, {reversed_low_.data(), reversed_high_.data()}, size_.width,
@@ -147,7 +171,7 @@ class PathMatcher::RowsOf : public PathMatcher::Rows {
   /// Costs of the windows of a row; whether the road's hypothesis is among them.
   bool costsOfRow(const RoadCensus* road, int v) {
     const auto row = [&](auto& rows, int y) {
-      return rows[static_cast<std::size_t>(std::clamp(y, 0, size_.height - 1)) % rows.size()].data();
+      return rows[static_cast<std::size_t>(std::clamp(y, 0, size_.height - 1)) % kRing].data();
     };
     path::sumWindows<Lanes>(row(raw_, v - 1), row(raw_, v), row(raw_, v + 1), size_.width, column_.data(),
                             frontal_.data());
@@ -155,38 +179,27 @@ class PathMatcher::RowsOf : public PathMatcher::Rows {
     const double road_px = road->road.disparityAt(v);
     if (road_px < 0.0) return false;
     const int whole = static_cast<int>(road_px);
-    first_ = whole - kRoadMiddle;
-    if (first_ >= Lanes) return false;
+    const int first = whole - kRoadMiddle;
+    if (first >= Lanes) return false;
     path::sumWindows<kRoadLanes>(row(road_raw_, v - 1), row(road_raw_, v), row(road_raw_, v + 1), size_.width,
                                  column_.data(), road_window_.data() + 1);
     std::array<std::uint8_t, kRoadLanes> never{};
     for (int m = 0; m < kRoadLanes; ++m) {
-      const bool inside = m > 0 && first_ + m >= 0 && first_ + m < Lanes;
+      const bool inside = m > 0 && first + m >= 0 && first + m < Lanes;
       never[static_cast<std::size_t>(m)] = inside ? 0 : kNever;
     }
     shiftRoadLanes(road_window_.data() + 1, never.data(), static_cast<int>((road_px - whole) * kRatioSteps),
                    size_.width, road_.data());
     std::copy(frontal_.begin(), frontal_.end(), lesser_.begin() + kRoadLanes);
-    takeLesser<Lanes>(road_.data(), first_, size_.width, lesser_.data() + kRoadLanes);
+    takeLesser<Lanes>(road_.data(), first, size_.width, lesser_.data() + kRoadLanes);
     return true;
-  }
-
-  void compareHypotheses(const std::vector<std::int32_t>& chosen, std::int8_t* evidence) const {
-    for (std::size_t x = 0; x < chosen.size(); ++x) {
-      if (chosen[x] == kNoDisparity) continue;
-      const int d = (chosen[x] + kDisparityScale / 2) / kDisparityScale, lane = d - first_;
-      if (lane < 0 || lane >= kRoadLanes || d >= Lanes) continue;
-      const std::uint8_t of_road = road_[x * kRoadLanes + static_cast<std::size_t>(lane)];
-      if (of_road != kNever)
-        evidence[x] = static_cast<std::int8_t>(frontal_[x * Lanes + static_cast<std::size_t>(d)] - of_road);
-    }
   }
 
   cv::Size size_;
   path::Steps steps_;
   DisparityChoice choice_;
-  int first_ = 0;                        ///< disparity of the road's lane 0 in the row at hand
-  std::array<Bytes, 3> raw_, road_raw_;  ///< the last rows
+  std::array<Bytes, kRing> raw_, road_raw_;  ///< costs of the last rows
+  HypothesisWindows windows_;
   Bytes column_, frontal_, lesser_, road_window_, road_;
   Bytes reversed_low_, reversed_high_;
   std::array<Bytes, 3> sums_, least_;  ///< by path from above

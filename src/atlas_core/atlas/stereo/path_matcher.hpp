@@ -27,14 +27,9 @@ struct PathParams {
 /// Throws std::invalid_argument that names the field and its value.
 void validate(const PathParams& params);
 
-/// Of the frontal and the road's hypothesis at a pixel's disparity.
-constexpr std::int8_t kNotRoad = -128;
-
 struct PathMatch {
   cv::Mat disparity;  ///< CV_32SC1, 1/256 px, or kNoDisparity
-  /// CV_8SC1: cost as a thing that stands less cost as road, > 0: road; kNotRoad where the disparity is not
-  /// near the road's, or unknown.
-  cv::Mat road_evidence;
+  cv::Mat surface;    ///< CV_8UC1 of SurfaceLabel; without road everything is an obstacle
 };
 
 /// The second hypothesis: the census of the right image in the view of the road.

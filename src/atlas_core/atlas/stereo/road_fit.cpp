@@ -12,9 +12,11 @@ namespace atlas {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr int kRowStep = 4;     // rows of the image that make one of the histogram
-constexpr int kFewestRows = 6;  // of the histogram that a line is fitted to
-constexpr int kMostBins = 256;  // of disparity, 1 px
+constexpr int kRowStep = 4;      // rows of the image that make one of the histogram
+constexpr int kSampleStep = 2;   // of the pixels that are looked at, in rows and columns
+constexpr int kFewestRows = 6;   // of the histogram that a line is fitted to
+constexpr int kMostBins = 256;   // of disparity, 1 px
+constexpr int kUnderWeight = 4;  // pixels under a line count against it as a quarter of one on it
 
 [[noreturn]] void reject(const std::string& field, const std::string& need, double value) {
   throw std::invalid_argument("road fit: " + field + " must be " + need + ", got " + std::to_string(value));
@@ -25,10 +27,10 @@ class VDisparity {
  public:
   explicit VDisparity(const cv::Mat& disparity) : rows_((disparity.rows + kRowStep - 1) / kRowStep) {
     sums_.assign(static_cast<std::size_t>(rows_) * (kMostBins + 1), 0);
-    for (int v = 0; v < disparity.rows; ++v) {
+    for (int v = 0; v < disparity.rows; v += kSampleStep) {
       const std::int32_t* row = disparity.ptr<std::int32_t>(v);
       std::int32_t* counts = sums_.data() + static_cast<std::size_t>(v / kRowStep) * (kMostBins + 1) + 1;
-      for (int u = 0; u < disparity.cols; ++u)
+      for (int u = 0; u < disparity.cols; u += kSampleStep)
         if (row[u] >= 0 && row[u] < kMostBins * kDisparityScale) ++counts[row[u] / kDisparityScale];
     }
     for (int row = 0; row < rows_; ++row) {
@@ -54,6 +56,13 @@ class VDisparity {
     }
     return sum;
   }
+  /// Pixels that would be under the road, where nothing can be.
+  [[nodiscard]] int under(const RoadProfile& road) const {
+    int sum = 0;
+    for (int row = firstBelow(road); row < rows_; ++row)
+      sum += count(row, 0, static_cast<int>(road.disparityAt(middleOf(row)) + 0.5) - 2);
+    return sum;
+  }
   [[nodiscard]] int below(const RoadProfile& road) const {
     int sum = 0;
     for (int row = firstBelow(road); row < rows_; ++row) sum += count(row, 0, kMostBins);
@@ -72,12 +81,13 @@ class VDisparity {
 std::optional<RoadProfile> fitted(const cv::Mat& disparity, const RoadProfile& road, double inlier_px) {
   double n = 0, sum_v = 0, sum_d = 0, sum_vv = 0, sum_vd = 0;
   int rows = 0;
-  for (int v = std::max(0, static_cast<int>(std::ceil(road.horizon_row))); v < disparity.rows; v += 2) {
+  for (int v = std::max(0, static_cast<int>(std::ceil(road.horizon_row))); v < disparity.rows;
+       v += kSampleStep) {
     const std::int32_t* row = disparity.ptr<std::int32_t>(v);
     const double on_road = road.disparityAt(v) * kDisparityScale, reach = inlier_px * kDisparityScale;
     const int from = static_cast<int>(std::max(0.0, on_road - reach)), to = static_cast<int>(on_road + reach);
     std::int64_t count = 0, sum = 0;
-    for (int u = 0; u < disparity.cols; ++u) {
+    for (int u = 0; u < disparity.cols; u += kSampleStep) {
       const bool inlier = row[u] >= from && row[u] <= to;
       count += inlier;
       sum += inlier ? row[u] : 0;
@@ -104,6 +114,14 @@ struct Bounds {
     return road.horizon_row >= first_horizon && road.horizon_row <= last_horizon &&
            road.slope_px >= min_slope && road.slope_px <= max_slope;
   }
+  /// Where the road of the next image is: a braking car dips by a degree or two.
+  [[nodiscard]] Bounds around(const RoadProfile& road) const {
+    constexpr double kRows = 24.0, kSlopeShare = 0.2;
+    return {std::max(first_horizon, road.horizon_row - kRows),
+            std::min(last_horizon, road.horizon_row + kRows),
+            std::max(min_slope, road.slope_px * (1.0 - kSlopeShare)),
+            std::min(max_slope, road.slope_px * (1.0 + kSlopeShare))};
+  }
 };
 
 RoadProfile bestLine(const VDisparity& pixels, const Bounds& bounds, int image_rows) {
@@ -115,13 +133,26 @@ RoadProfile bestLine(const VDisparity& pixels, const Bounds& bounds, int image_r
                  to_px = bounds.max_slope * (bottom - horizon);
     for (double bottom_px = from_px; bottom_px <= to_px; bottom_px += 1.0) {
       const RoadProfile line{horizon, bottom_px / (bottom - horizon)};
-      const int near = pixels.near(line);
-      if (near <= most) continue;
-      most = near;
+      const int score = pixels.near(line) - pixels.under(line) / kUnderWeight;
+      if (score <= most) continue;
+      most = score;
       best = line;
     }
   }
   return best;
+}
+
+std::optional<RoadProfile> fittedWithin(const Bounds& bounds, const VDisparity& pixels,
+                                        const cv::Mat& disparity, const RoadFitParams& params) {
+  RoadProfile line = bestLine(pixels, bounds, disparity.rows);
+  for (const double reach : {2.0 * params.inlier_px, params.inlier_px, params.inlier_px}) {
+    const auto better = fitted(disparity, line, reach);
+    if (!better || !bounds.contain(*better)) return std::nullopt;
+    line = *better;
+  }
+  const int below = pixels.below(line);
+  if (below == 0 || pixels.near(line) < params.min_road_share * below) return std::nullopt;
+  return line;
 }
 
 }  // namespace
@@ -145,16 +176,11 @@ std::optional<RoadProfile> fitRoad(const cv::Mat& disparity, const StereoRig& ri
                       std::min(rig.v0_px + tilt_px, rig.height_px - 2.0 * kRowStep * kFewestRows),
                       rig.baseline_m / params.max_height_m, rig.baseline_m / params.min_height_m};
   const VDisparity pixels(disparity);
-  RoadProfile line = bestLine(pixels, bounds, disparity.rows);
-  if (prior && bounds.contain(*prior) && pixels.near(*prior) * 10 >= pixels.near(line) * 9) line = *prior;
-  for (const double reach : {2.0 * params.inlier_px, params.inlier_px, params.inlier_px}) {
-    const auto better = fitted(disparity, line, reach);
-    if (!better || !bounds.contain(*better)) return std::nullopt;
-    line = *better;
+  if (prior && bounds.contain(*prior)) {
+    const auto near = fittedWithin(bounds.around(*prior), pixels, disparity, params);
+    if (near) return near;
   }
-  const int below = pixels.below(line);
-  if (below == 0 || pixels.near(line) < params.min_road_share * below) return std::nullopt;
-  return line;
+  return fittedWithin(bounds, pixels, disparity, params);
 }
 
 RoadProfile roadFromCamera(const StereoRig& rig, double height_m, double pitch_rad) {

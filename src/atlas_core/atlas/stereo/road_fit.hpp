@@ -13,8 +13,8 @@
 namespace atlas {
 
 struct RoadFitParams {
-  double min_height_m = 0.4, max_height_m = 4.0;  ///< of the camera above the road
-  double max_pitch_deg = 8.0;                     ///< of the camera, up or down
+  double min_height_m = 0.6, max_height_m = 3.5;  ///< of the camera above the road
+  double max_pitch_deg = 5.0;                     ///< of the camera, up or down
   double inlier_px = 1.0;                         ///< of disparity; nearer to the line is road
   double min_road_share = 0.25;  ///< of the pixels below the horizon; fewer: the road is unknown
 };
