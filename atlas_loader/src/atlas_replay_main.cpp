@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   app.add_option("--config", options.config,
                  "parameters of all stages (default: the packaged ones that fit the input)");
   atlas_loader::addRecordArguments(app, options.input);
-  app.add_option("--write", options.write, "also write: deskewed, lines")->delimiter(',');
+  app.add_option("--write", options.write, "also write: deskewed, lines, map_colour")->delimiter(',');
   app.add_flag("--smooth", options.smooth,
                "two passes: position and smooth first, then de-skew and map with the smoothed trajectory");
   app.add_flag("--one-thread", options.one_thread,

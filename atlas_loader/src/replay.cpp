@@ -72,8 +72,8 @@ bool asksFor(const ReplayOptions& options, const std::string& product) {
 
 void refuseUnknownProducts(const ReplayOptions& options) {
   for (const std::string& product : options.write) {
-    if (product != "deskewed" && product != "lines")
-      throw std::invalid_argument("--write knows deskewed and lines, got '" + product + "'");
+    if (product != "deskewed" && product != "lines" && product != "map_colour")
+      throw std::invalid_argument("--write knows deskewed, lines and map_colour, got '" + product + "'");
   }
 }
 
@@ -82,6 +82,7 @@ atlas::WriterParams writerParams(Configuration& configuration, const ReplayOptio
   writers.cloud = configuration.section<atlas::CloudWriterParams>("cloud_writer");
   writers.line = configuration.section<atlas::LineWriterParams>("line_writer");
   writers.map = configuration.section<atlas::MapWriterParams>("map_writer");
+  if (asksFor(options, "map_colour")) writers.map.map.colour = true;
   writers.depth = configuration.section<atlas::DepthWriterParams>("depth_writer");
   writers.frustum = configuration.section<atlas::FrustumWriterParams>("frustum_writer");
   writers.thermal = configuration.section<atlas::ThermalWriterParams>("thermal_writer");
@@ -97,6 +98,15 @@ atlas::WriterParams writerParams(Configuration& configuration, const ReplayOptio
 }
 
 /// Adds the stages in order of the data path; the configuration decides all their parameters.
+/// Colours come from depth images and decoded pictures, which not every camera has.
+void checkColourCameras(const atlas::MapWriterParams& map, const atlas::DepthParams& depth) {
+  if (!map.map.colour) return;
+  for (const std::string& camera : map.colour_cameras) {
+    if (std::count(depth.cameras.begin(), depth.cameras.end(), camera) == 0)
+      throw std::invalid_argument("map_writer: colour_cameras: " + camera + " is not one of depth/cameras");
+  }
+}
+
 void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const ReplayOptions& options) {
   const auto decoder = configuration.section<VideoDecodeParams>("video_decoder");
   graph.beginThread();  // beside reading and unpacking
@@ -120,6 +130,7 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   const atlas::WriterParams writers = writerParams(configuration, options);
   configuration.rejectUnread();
   atlas::addWriters(graph, writers, options.out);
+  checkColourCameras(writers.map, params.depth);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct ReplayOptions {
   InputOptions input;
   std::string out;
   std::string config;              ///< YAML file; "" = packaged
-  std::vector<std::string> write;  ///< extra outputs: "deskewed", "lines"
+  std::vector<std::string> write;  ///< extra outputs: "deskewed", "lines", "map_colour"
   bool one_thread = false;         ///< instead of several, with the same outputs
   bool smooth = false;             ///< two passes: positioning and smoothing first
 };

@@ -30,6 +30,8 @@ void readParams(Reader& reader, MapWriterParams& p) {
   reader.read("voxel_m", p.map.voxel_m);
   reader.read("tile_m", p.map.tile_m);
   reader.read("keep_radius_m", p.map.keep_radius_m);
+  reader.readOptional("colour", p.map.colour);
+  reader.readOptional("colour_cameras", p.colour_cameras);
 }
 template <class Reader>
 void readParams(Reader& reader, DepthWriterParams& p) {

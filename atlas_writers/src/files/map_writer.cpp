@@ -28,10 +28,6 @@ std::string tileName(const std::pair<std::int32_t, std::int32_t>& key) {
 /// Distance of a value from the interval [low, high].
 double outside(double value, double low, double high) { return std::max({0.0, low - value, value - high}); }
 
-std::string_view bytesOf(const std::vector<MapPoint>& points) {
-  return {reinterpret_cast<const char*>(points.data()), points.size() * sizeof(MapPoint)};
-}
-
 std::int32_t voxelsPerTile(const MapParams& params) {
   validate(params);
   return static_cast<std::int32_t>(std::llround(params.tile_m / params.voxel_m));
@@ -74,13 +70,11 @@ MapWriter::Tile& MapWriter::tileAt(const TileKey& key) {
   return tile;
 }
 
-void MapWriter::add(const BatchedSweep& batched) {
-  if (batched.batches.empty()) return;
-  ++sweeps_;
+template <class Point, class Visit>
+void MapWriter::forEachVoxel(const std::vector<Point>& points, Visit&& visit) {
   std::optional<TileKey> key;
   Tile* tile = nullptr;  // of the point before: neighbours in a sweep are neighbours in space
-  const MapCloud cloud = inMap(batched);
-  for (const LidarPoint& p : cloud.points) {
+  for (const Point& p : points) {
     const std::optional<VoxelKey> voxel = voxelOf(p.x, p.y, p.z, params_.voxel_m);
     if (!voxel) continue;
     const TileKey tile_key{floorDiv(voxel->x, voxels_per_tile_), floorDiv(voxel->y, voxels_per_tile_)};
@@ -88,8 +82,21 @@ void MapWriter::add(const BatchedSweep& batched) {
       key = tile_key;
       tile = &tileAt(tile_key);
     }
-    tile->content.add(*voxel, p.x, p.y, p.z, p.intensity, params_.voxel_m);
+    visit(p, *voxel, tile->content);
   }
+}
+
+void MapWriter::add(const std::vector<ColouredPoint>& seen) {
+  forEachVoxel(
+      seen, [](const ColouredPoint& p, const VoxelKey& voxel, MapTile& tile) { tile.addColour(voxel, p); });
+}
+
+void MapWriter::add(const BatchedSweep& batched) {
+  if (batched.batches.empty()) return;
+  ++sweeps_;
+  forEachVoxel(inMap(batched).points, [this](const LidarPoint& p, const VoxelKey& voxel, MapTile& tile) {
+    tile.add(voxel, p.x, p.y, p.z, p.intensity, params_.voxel_m);
+  });
   spillFar(batched.T_map_lidar.translation);
 }
 
@@ -146,18 +153,22 @@ void MapWriter::finish(const Anchor& anchor) {
                                  {"tiles", nlohmann::ordered_json::array()}};
   std::optional<OutputFile> pcd, ply;
   if (points <= params_.single_file_limit) {
-    pcd.emplace(folder_ / "map.pcd").write(mapPcdHeader(points));
-    ply.emplace(folder_ / "map.ply").write(mapPlyHeader(points));
+    pcd.emplace(folder_ / "map.pcd").write(mapPcdHeader(points, params_.colour));
+    ply.emplace(folder_ / "map.ply").write(mapPlyHeader(points, params_.colour));
   }
+  std::uint64_t coloured = 0;
   for (const auto& [key, tile] : tiles) {
+    if (tile.voxels == 0) continue;  // seen by a camera alone
     const auto held = tiles_.find(key);
     const std::vector<MapPoint> content = held != tiles_.end()
                                               ? held->second.content.points(params_.voxel_m)
                                               : MapTile::load(spillPath(key)).points(params_.voxel_m);
     const std::string file = "tiles/" + tileName(key) + ".pcd";
-    writeFile(folder_ / file, mapPcdHeader(content.size()).append(bytesOf(content)));
-    if (pcd) pcd->write(bytesOf(content));
-    if (ply) ply->write(bytesOf(content));
+    const std::string records = mapRecords(content, params_.colour);
+    writeFile(folder_ / file, mapPcdHeader(content.size(), params_.colour).append(records));
+    if (pcd) pcd->write(records);
+    if (ply) ply->write(records);
+    for (const MapPoint& point : content) coloured += point.colour != 0 ? 1 : 0;
     json["tiles"].push_back({{"file", file},
                              {"ix", key.first},
                              {"iy", key.second},
@@ -166,6 +177,7 @@ void MapWriter::finish(const Anchor& anchor) {
   }
   if (pcd) pcd->commit();
   if (ply) ply->commit();
+  if (params_.colour) json["coloured"] = coloured;
   writeFile(folder_ / "tiles.json", json.dump(1) + "\n");
   std::error_code ignored;
   std::filesystem::remove_all(folder_ / ".waiting", ignored);

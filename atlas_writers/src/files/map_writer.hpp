@@ -22,7 +22,8 @@ struct MapParams {
   double tile_m = 50.0;  ///< a whole multiple of voxel_m
   double keep_radius_m =
       150.0;  ///< tiles farther from the vehicle are written to disk; more than the lidars see
-  std::uint64_t single_file_limit = 25000000;  ///< points: 20 bytes each
+  std::uint64_t single_file_limit = 25000000;  ///< points: 20 bytes each, with colour 24
+  bool colour = false;                         ///< the files have colours
 };
 /// Throws std::invalid_argument that names the field and its value.
 void validate(const MapParams& params);
@@ -38,6 +39,8 @@ class MapWriter {
 
   /// All points of the sweep that are finite; nothing for a sweep without pose.
   void add(const BatchedSweep& batched);
+  /// What a camera has seen.
+  void add(const std::vector<ColouredPoint>& seen);
   /// Writes the files; replaces the map of an earlier run in the same folder.
   void finish(const Anchor& anchor);
 
@@ -56,6 +59,9 @@ class MapWriter {
     std::uint64_t voxels = 0, returns = 0;
   };
   Tile& tileAt(const TileKey& key);
+  /// Calls visit(point, its voxel, the tile's content) for all that are finite.
+  template <class Point, class Visit>
+  void forEachVoxel(const std::vector<Point>& points, Visit&& visit);
   void spillFar(const Eigen::Vector3d& vehicle_map);
   [[nodiscard]] std::filesystem::path spillPath(const TileKey& key) const;
   [[nodiscard]] std::map<TileKey, Spilled> index() const;

@@ -6,10 +6,10 @@
 namespace atlas {
 namespace {
 
-std::vector<std::string> withSuffix(const std::vector<std::string>& names, const std::string& suffix,
-                                    std::vector<std::string> before = {}) {
-  for (const std::string& name : names) before.push_back(name + suffix);
-  return before;
+std::vector<std::string> withSuffix(const std::vector<std::string>& names, const std::string& suffix) {
+  std::vector<std::string> result;
+  for (const std::string& name : names) result.push_back(name + suffix);
+  return result;
 }
 
 /// For destructors: what cannot be written any more is said nowhere else, and nothing may leave a destructor.
@@ -71,34 +71,6 @@ void CloudWriterStage::push(std::size_t lidar, const BatchedSweepPtr& batched) {
     writer_.write(params_.lidars[lidar], index, *batched);
     counters_.add("sweeps");
   });
-}
-
-MapWriterStage::MapWriterStage(const MapWriterParams& params, const std::filesystem::path& out)
-    : Stage("map_writer", withSuffix(params.lidars, "/batches", {"anchor"})), writer_(out, params.map) {}
-MapWriterStage::~MapWriterStage() {
-  closeQuietly("map_writer", [this] { finishOnce(); });
-}
-void MapWriterStage::push(const Anchor& anchor) {
-  enqueue(kAnchor, anchor.stamp, [this, anchor] { anchor_ = anchor; });
-}
-void MapWriterStage::push(std::size_t lidar, const BatchedSweepPtr& batched) {
-  enqueue(kFirstLidar + lidar, batched->stamp, [this, batched] {
-    if (batched->batches.empty()) {
-      counters_.skip("sweep", Reason::kNoPoseYet);
-      return;
-    }
-    writer_.add(*batched);
-    counters_.add("sweeps");
-  });
-}
-void MapWriterStage::onEnd() {
-  if (!anchor_) counters_.skip("map", Reason::kNoPoseYet);
-  finishOnce();
-}
-void MapWriterStage::finishOnce() {
-  if (finished_ || !anchor_) return;
-  finished_ = true;
-  writer_.finish(*anchor_);
 }
 
 DepthWriterStage::DepthWriterStage(const DepthWriterParams& params, const std::filesystem::path& out)

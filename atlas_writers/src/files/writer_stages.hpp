@@ -14,7 +14,7 @@
 #include "files/depth_writer.hpp"
 #include "files/frustum_writer.hpp"
 #include "files/line_writer.hpp"
-#include "files/map_writer.hpp"
+#include "files/map_writer_stage.hpp"
 #include "files/object_writer.hpp"
 #include "files/obstacle_writer.hpp"
 #include "files/overlay_writer.hpp"
@@ -33,10 +33,6 @@ struct CloudWriterParams {
 };
 struct LineWriterParams {
   std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
-};
-struct MapWriterParams {
-  std::vector<std::string> lidars = {"lidar_left", "lidar_right"};
-  MapParams map;
 };
 struct DepthWriterParams {
   std::vector<std::string> cameras = {"camera_ir"};
@@ -87,23 +83,6 @@ class CloudWriterStage : public Stage {
   CloudWriterParams params_;
   CloudWriter writer_;
   std::vector<std::uint32_t> count_;
-};
-
-class MapWriterStage : public Stage {
- public:
-  /// Inputs: 0 anchor, 1 + i batches of params.lidars[i].
-  enum Input : std::size_t { kAnchor, kFirstLidar };
-  MapWriterStage(const MapWriterParams& params, const std::filesystem::path& out);
-  ~MapWriterStage() override;
-  void push(const Anchor& anchor);
-  void push(std::size_t lidar, const BatchedSweepPtr& batched);
-
- private:
-  void onEnd() override;
-  void finishOnce();
-  MapWriter writer_;
-  std::optional<Anchor> anchor_;
-  bool finished_ = false;
 };
 
 class DepthWriterStage : public Stage {
@@ -192,10 +171,33 @@ StageFactory bindCloudWriter(Bus& bus, const CloudWriterParams& params, const st
 template <class Bus>
 StageFactory bindMapWriter(Bus& bus, const MapWriterParams& params, const std::string& out) {
   using S = MapWriterStage;
+void bindMapColours(Bus& bus, const MapWriterParams& params) {
+  using S = MapWriterStage;
+  const auto at = [&params](S::ColourInput input, std::size_t c = 0) {
+    return S::colourInput(params, input, c);
+  };
+  bus.template input<S, StaticTransforms>(at(S::kTfStatic), "tf_static",
+                                          [](S& s, const StaticTransforms& t) { s.push(kStaticStamp, t); });
+  bus.template input<S, Odometry>(at(S::kOdometry), "odometry", [](S& s, const Odometry& o) { s.push(o); });
+  for (std::size_t c = 0; c < params.colour_cameras.size(); ++c) {
+    const std::string& camera = params.colour_cameras[c];
+    bus.template input<S, CameraInfo>(at(S::kInfo, c), camera + "/camera_info",
+                                      [c](S& s, const CameraInfo& info) { s.push(c, info); });
+    bus.template input<S, ImagePtr>(at(S::kPicture, c), camera + "/image",
+                                    [c](S& s, const ImagePtr& picture) { s.push(c, picture); });
+    bus.template input<S, DepthImagePtr>(at(S::kDepth, c), camera + "/depth/image",
+                                         [c](S& s, const DepthImagePtr& depth) { s.pushDepth(c, depth); });
+    bus.template input<S, DepthImagePtr>(at(S::kConfidence, c), camera + "/depth/confidence",
+                                         [c](S& s, const DepthImagePtr& d) { s.pushConfidence(c, d); });
+  }
+}
+template <class Bus>
   bus.template input<S, Anchor>(S::kAnchor, "anchor", [](S& s, const Anchor& a) { s.push(a); });
   inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
+  validate(params);
   return [=] { return std::make_unique<S>(params, out); };
 }
+  if (params.map.colour) bindMapColours(bus, params);
 template <class Bus>
 StageFactory bindDepthWriter(Bus& bus, const DepthWriterParams& params, const std::string& out) {
   inputs<DepthWriterStage, DepthImagePtr>(bus, 0, params.cameras, "/depth/image");

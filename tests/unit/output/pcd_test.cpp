@@ -101,19 +101,24 @@ TEST(Pcd, whatIsNoSuchFileIsRefused) {
 }
 
 TEST(Pcd, mapHeaderDescribesTheRecord) {
-  const std::string header = mapPcdHeader(3);
-  EXPECT_NE(header.find("FIELDS x y z intensity count\nSIZE 4 4 4 4 4\nTYPE F F F F U\n"), std::string::npos);
-  EXPECT_NE(header.find("WIDTH 3\n"), std::string::npos);
-  std::string bytes = header;
-  for (int i = 0; i < 3; ++i) {
-    const MapPoint point{1.0F * static_cast<float>(i), 2.0F, 3.0F, 4.0F, 5};
-    bytes.append(reinterpret_cast<const char*>(&point), sizeof point);
+  std::vector<MapPoint> points;
+  for (int i = 0; i < 3; ++i)
+    points.push_back({1.0F * static_cast<float>(i), 2.0F, 3.0F, 4.0F, 5, 0xFF102030U});
+  for (const bool coloured : {false, true}) {
+    const std::string header = mapPcdHeader(3, coloured);
+    EXPECT_NE(header.find(coloured ? "FIELDS x y z intensity count rgb\nSIZE 4 4 4 4 4 4\nTYPE F F F F U F\n"
+                                   : "FIELDS x y z intensity count\nSIZE 4 4 4 4 4\nTYPE F F F F U\n"),
+              std::string::npos);
+    EXPECT_NE(header.find("WIDTH 3\n"), std::string::npos);
+    const std::string bytes = header + mapRecords(points, coloured);
+    const auto read = decodePcd(bytes);
+    ASSERT_TRUE(read);
+    ASSERT_EQ(read->size(), 3U);
+    EXPECT_EQ((*read)[2].x, 2.0F);
+    EXPECT_EQ((*read)[2].intensity, 4.0F);
+    if (coloured)
+      EXPECT_EQ(bytes.substr(bytes.size() - 4), "\x30\x20\x10\xFF") << "little endian ARGB, as PCL";
   }
-  const auto read = decodePcd(bytes);
-  ASSERT_TRUE(read);
-  ASSERT_EQ(read->size(), 3U);
-  EXPECT_EQ((*read)[2].x, 2.0F);
-  EXPECT_EQ((*read)[2].intensity, 4.0F);
 }
 
 }  // namespace

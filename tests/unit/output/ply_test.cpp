@@ -26,19 +26,23 @@ TEST(Ply, theWholeHeader) {
 
 // What a reader does: the properties in their order must add up to the record that is written, a MapPoint.
 TEST(Ply, propertiesDescribeTheRecord) {
-  std::istringstream header(mapPlyHeader(1));
-  std::size_t bytes = 0;
-  std::vector<std::string> names;
-  for (std::string word; header >> word;) {
-    if (word != "property") continue;
-    std::string type, name;
-    header >> type >> name;
-    EXPECT_TRUE(type == "float" || type == "uint") << type;
-    bytes += 4;
-    names.push_back(name);
+  for (const bool coloured : {false, true}) {
+    std::istringstream header(mapPlyHeader(1, coloured));
+    std::size_t bytes = 0;
+    std::vector<std::string> names;
+    for (std::string word; header >> word;) {
+      if (word != "property") continue;
+      std::string type, name;
+      header >> type >> name;
+      EXPECT_TRUE(type == "float" || type == "uint" || type == "uchar") << type;
+      bytes += type == "uchar" ? 1 : 4;
+      names.push_back(name);
+    }
+    EXPECT_EQ(bytes, mapRecords({MapPoint()}, coloured).size());
+    std::vector<std::string> expected = {"x", "y", "z", "intensity", "count"};
+    if (coloured) expected.insert(expected.end(), {"blue", "green", "red", "alpha"});
+    EXPECT_EQ(names, expected);
   }
-  EXPECT_EQ(bytes, sizeof(MapPoint));
-  EXPECT_EQ(names, (std::vector<std::string>{"x", "y", "z", "intensity", "count"}));
 }
 
 TEST(Ply, noPointsAndVeryMany) {

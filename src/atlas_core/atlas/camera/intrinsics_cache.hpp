@@ -32,12 +32,12 @@ class IntrinsicsCache {
     return intrinsics_;
   }
 
- private:
   static bool sameCalibration(const CameraInfo& a, const CameraInfo& b) {
     return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model &&
            a.distortion == b.distortion && a.K == b.K;
   }
 
+ private:
   double min_depth_m_, max_depth_m_;
   std::optional<CameraInfo> last_;
   Outcome<Intrinsics> intrinsics_ = Reason::kMissingIntrinsics;

@@ -142,8 +142,17 @@ Outcome<std::vector<LidarPoint>> decodePcd(const std::string& bytes) {
   return points;
 }
 
-std::string mapPcdHeader(std::uint64_t points) {
+std::string mapPcdHeader(std::uint64_t points, bool coloured) {
+  if (coloured)
+    return header("x y z intensity count rgb", "4 4 4 4 4 4", "F F F F U F", "1 1 1 1 1 1", points);
   return header("x y z intensity count", "4 4 4 4 4", "F F F F U", "1 1 1 1 1", points);
+}
+
+std::string mapRecords(const std::vector<MapPoint>& points, bool coloured) {
+  const std::size_t record = coloured ? sizeof(MapPoint) : offsetof(MapPoint, colour);
+  std::string bytes(record * points.size(), '\0');
+  for (std::size_t i = 0; i < points.size(); ++i) std::memcpy(&bytes[record * i], &points[i], record);
+  return bytes;
 }
 
 }  // namespace atlas

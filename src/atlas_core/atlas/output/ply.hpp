@@ -7,8 +7,8 @@
 
 namespace atlas {
 
-/// Header for `points` vertices x y z intensity (float) and count (uint): MapPoints as they lie in memory
-/// follow it.
-[[nodiscard]] std::string mapPlyHeader(std::uint64_t points);
+/// Header for `points` vertices x y z intensity (float), count (uint) and, if `coloured`, blue green red
+/// alpha (uchar): mapRecords follow it.
+[[nodiscard]] std::string mapPlyHeader(std::uint64_t points, bool coloured = false);
 
 }  // namespace atlas
