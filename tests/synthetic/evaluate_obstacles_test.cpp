@@ -95,10 +95,10 @@ class ObstaclesTest : public EvaluateTest {
     }
     writeText(folders_.out / "obstacles" / "obstacles.csv", csv);
   }
-  nlohmann::ordered_json judged() const {
+  nlohmann::ordered_json judged(const char* group = "obstacles") const {
     Evaluation evaluation;
     evaluateObstacles(folders_, {}, evaluation);
-    return evaluation.toJson()["obstacles"];
+    return evaluation.toJson()[group];
   }
 
   Eigen::Vector3d here_;
@@ -151,6 +151,33 @@ TEST_F(ObstaclesTest, AnInstantWithoutBoxesIsAMiss) {
   evaluateObstacles(folders_, {}, evaluation);
   EXPECT_NEAR(evaluation.toJson()["obstacles"]["objects_found_percent"], 200.0 / 3.0, 1e-9);
   EXPECT_TRUE(isSkipped(evaluation, "broken row"));
+}
+
+TEST_F(ObstaclesTest, TheErrorOfThePoseCanBeTakenOut) {
+  // The run thinks that it is 3 m further east and a quarter further left: so are its boxes.
+  const Pose T_wrong{fromRollPitchYaw({0, 0, M_PI / 2}), Eigen::Vector3d(3.0, 0.0, 0.0)};
+  std::vector<StampedPose> wrong = readTrajectory(folders_.truth / "trajectory.tum");
+  for (StampedPose& pose : wrong) pose.pose = T_wrong * pose.pose;
+  EvaluateTest::writeRun(wrong, anchorText(DriveOptions().anchor));
+  std::string csv = "stamp_ns,index,x,y,z,yaw,length,width,height,points\n";
+  for (const Stamp stamp : stamp_) {
+    int index = 0;
+    for (const auto& [x, y, length, width] :
+         {std::array{10.0, 0.0, 4.0, 2.0}, std::array{0.0, 8.0, 0.5, 0.5}}) {
+      const Eigen::Vector3d center = T_wrong * (here_ + Eigen::Vector3d(x, y, 0.0));
+      char row[300];
+      std::snprintf(row, sizeof row, "%lld,%d,%.6f,%.6f,%.6f,%.9f,%.4f,%.4f,1.5,40\n",
+                    static_cast<long long>(stamp), index++, center.x(), center.y(), center.z(), M_PI / 2,
+                    length, width);
+      csv += row;
+    }
+  }
+  writeText(folders_.out / "obstacles" / "obstacles.csv", csv);
+  EXPECT_EQ(judged()["objects_found_percent"], 0.0);
+  const auto as_seen = judged("obstacles_without_pose_error");
+  EXPECT_EQ(as_seen["instants"], kInstants);
+  EXPECT_EQ(as_seen["objects_found_percent"], 100.0);
+  EXPECT_GT(as_seen["overlap_from_above_median"], 0.99);
 }
 
 TEST_F(ObstaclesTest, WithoutDataThereIsAReason) {

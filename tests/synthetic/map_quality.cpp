@@ -119,8 +119,7 @@ Results measure(const Arguments& arguments, const PositionedRun& run) {
   Results results;
   if (!arguments.truth.empty() && run.anchor)
     results.errors.emplace(arguments.truth, *run.anchor, run.motion);
-  // by topic and place in stride
-  std::map<std::pair<std::string, std::size_t>, std::vector<SweepPtr>> waiting;
+  std::map<std::pair<std::string, std::size_t>, std::vector<SweepPtr>> waiting;  // topic, place in stride
   std::map<std::string, int> counts;
   const auto reader = atlas_loader::openInput(arguments.input);
   while (const auto event = reader->next()) {
@@ -131,6 +130,7 @@ Results measure(const Arguments& arguments, const PositionedRun& run) {
     if (!T_imu_lidar) throw std::runtime_error(topic + ": no calibration for frame " + (*sweep)->frame);
     const int index = counts[topic]++;
     if (results.errors) results.errors->add(topic.substr(0, topic.find('/')), index, *sweep, *T_imu_lidar);
+    if (arguments.sweeps == 0) continue;
     if (!placed(*sweep, DeskewWay::kPerPoint, run.motion.inMap(), *T_imu_lidar)) continue;  // no poses there
     std::vector<SweepPtr>& sweeps = waiting[{topic, static_cast<std::size_t>(index) % arguments.stride}];
     sweeps.push_back(judged(*sweep, arguments, *T_imu_lidar));
@@ -260,10 +260,10 @@ int run(int argc, char** argv) {
   app.add_option("--calibration", a.input.calibration, "calibration folder of a record that carries none");
   app.add_option("--scan-stamp", a.input.scan_stamp, "of records: end or start")->capture_default_str();
   app.add_option("--poses", a.poses, "filtered, smoothed or recorded")->capture_default_str();
-  app.add_option("--motion", a.motion, "within a sweep, of the errors: velocities or poses")
-      ->check(CLI::IsMember({"velocities", "poses"}));
+  app.add_option("--motion", a.motion, "within a sweep")->check(CLI::IsMember({"velocities", "poses"}));
   app.add_option("--truth", a.truth, "RECORD/truth of a synthetic drive");
-  app.add_option("--sweeps", a.sweeps, "sweeps of a window")->check(CLI::Range(2, 1000));
+  app.add_option("--sweeps", a.sweeps, "of a window; 0: none")
+      ->check(CLI::Range(2, 1000) | CLI::IsMember({0}));
   app.add_option("--stride", a.stride, "every n-th sweep belongs to a window; n windows run side by side")
       ->check(CLI::Range(1, 1000));
   app.add_option("--min-height", a.min_height_m, "m, in the vehicle's frame: lower returns are left out");

@@ -60,6 +60,7 @@ Evaluation evaluateRun(const RunFolders& folders) {
     evaluatePoints(folders, T_truth_run, evaluation);
     evaluateObstacles(folders, T_truth_run, evaluation);
     evaluateObjects(folders, T_truth_run, evaluation);
+    evaluateMapColour(folders, T_truth_run, evaluation);
   } else {
     evaluation.skip("trajectory and points: no trajectory/anchor.json");
   }

@@ -43,6 +43,8 @@ void evaluatePoints(const RunFolders& folders, const Pose& T_truth_run, Evaluati
 void evaluateObstacles(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation);
 /// Objects of out/objects: MOTA, HOTA, IDF1, identity switches, velocities, classes, static or dynamic.
 void evaluateObjects(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation);
+/// Colours of out/map/map.pcd, if it has any, against those of the surfaces.
+void evaluateMapColour(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation);
 void evaluateDepth(const RunFolders& folders, Evaluation& evaluation);
 /// Distances of out/frustums against the nearest visible point of the true object that the detection shows.
 void evaluateFrustums(const RunFolders& folders, Evaluation& evaluation);

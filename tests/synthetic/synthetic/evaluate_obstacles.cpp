@@ -59,8 +59,7 @@ struct Result {
   std::uint64_t fragments = 0, mixed = 0, on_ground = 0, empty = 0;  ///< wrong
   std::vector<float> overlap;
 
-  void report(Evaluation& evaluation) {
-    const std::string group = "obstacles";
+  void report(const std::string& group, Evaluation& evaluation) {
     const std::uint64_t wrong = fragments + mixed + on_ground + empty;
     evaluation.addCount(group, "instants", instants);
     evaluation.add(group, "objects_found_percent", found.percent());
@@ -153,16 +152,39 @@ void judge(const std::vector<PlanBox>& boxes, const std::vector<OwnedPoint>& poi
   }
 }
 
-}  // namespace
+Trajectory trajectoryOf(const fs::path& tum) {
+  Trajectory trajectory;
+  for (const StampedPose& pose : readTrajectory(tum)) trajectory.push(pose);
+  return trajectory;
+}
 
-void evaluateObstacles(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation) {
-  const fs::path csv = folders.out / "obstacles" / "obstacles.csv";
-  if (!fs::exists(csv)) return evaluation.skip("obstacles: no obstacles/obstacles.csv");
-  if (!fs::is_directory(folders.truth / "points")) return evaluation.skip("obstacles: no truth of points");
-  const BoxesByStamp boxes = readBoxes(csv, T_truth_run, evaluation);
-  if (boxes.empty()) return evaluation.skip("obstacles: none in obstacles.csv");
-  const ObstacleTruth truth(folders);
+/// The boxes as the vehicle saw them: where they are once the error of the run's pose is taken out. Those of
+/// stamps without a pose stay out.
+BoxesByStamp withoutPoseError(const BoxesByStamp& boxes, const RunFolders& folders, const Pose& T_truth_run) {
+  const Trajectory truth = trajectoryOf(folders.truth / "trajectory.tum"),
+                   run = trajectoryOf(folders.out / "trajectory" / "trajectory.tum");
+  BoxesByStamp result;
+  for (const auto& [stamp, seen] : boxes) {
+    const auto T_map_imu = truth.at(stamp), T_run_imu = run.at(stamp);
+    if (!T_map_imu || !T_run_imu) continue;
+    const Pose T = *T_map_imu * (T_truth_run * *T_run_imu).inverse();
+    for (PlanBox box : seen) {
+      const Eigen::Vector3d center =
+          T * Eigen::Vector3d(box.center.x(), box.center.y(), 0.5 * (box.bottom + box.top));
+      const double half_height = 0.5 * (box.top - box.bottom);
+      box.center = center.head<2>();
+      box.bottom = center.z() - half_height;
+      box.top = center.z() + half_height;
+      box.yaw_rad += toRollPitchYaw(T.rotation).yaw;
+      result[stamp].push_back(box);
+    }
+  }
+  return result;
+}
+
+Result resultOf(const BoxesByStamp& boxes, const ObstacleTruth& truth) {
   Result result;
+  if (boxes.empty()) return result;
   for (const Stamp stamp : truth.stamps()) {
     if (stamp < boxes.begin()->first || stamp > boxes.rbegin()->first) continue;  // no pose yet, or no more
     const auto points = truth.pointsAt(stamp);
@@ -173,9 +195,24 @@ void evaluateObstacles(const RunFolders& folders, const Pose& T_truth_run, Evalu
     judge(found == boxes.end() ? std::vector<PlanBox>{} : found->second, *points, truth.objectsAt(stamp),
           *vehicle, result);
   }
+  return result;
+}
+
+}  // namespace
+
+void evaluateObstacles(const RunFolders& folders, const Pose& T_truth_run, Evaluation& evaluation) {
+  const fs::path csv = folders.out / "obstacles" / "obstacles.csv";
+  if (!fs::exists(csv)) return evaluation.skip("obstacles: no obstacles/obstacles.csv");
+  if (!fs::is_directory(folders.truth / "points")) return evaluation.skip("obstacles: no truth of points");
+  const BoxesByStamp boxes = readBoxes(csv, T_truth_run, evaluation);
+  if (boxes.empty()) return evaluation.skip("obstacles: none in obstacles.csv");
+  const ObstacleTruth truth(folders);
+  Result result = resultOf(boxes, truth);
   if (result.instants == 0)
     return evaluation.skip("obstacles: no instant with truth of all lidars (make_drive --truth-points 1)");
-  result.report(evaluation);
+  result.report("obstacles", evaluation);
+  Result as_seen = resultOf(withoutPoseError(boxes, folders, T_truth_run), truth);
+  if (as_seen.instants > 0) as_seen.report("obstacles_without_pose_error", evaluation);
 }
 
 }  // namespace atlas::synthetic
