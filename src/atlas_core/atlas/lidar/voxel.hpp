@@ -43,9 +43,10 @@ class VoxelFilter {
   [[nodiscard]] std::vector<LidarPoint> take();
 
  private:
+  /// Sums of what the points of a voxel differ from its first one: floats are enough for that.
   struct Sum {
-    double x = 0, y = 0, z = 0, intensity = 0;
-    std::uint32_t count = 0;
+    float x = 0, y = 0, z = 0, intensity = 0;
+    std::uint32_t count = 1;
   };
   /// The voxel of the last point of a laser: the next one mostly lies in the same.
   struct Last {
