@@ -93,9 +93,6 @@ DisparityChoice::DisparityChoice(int width, const ChoiceLanes& lanes, const Choi
 
 const std::vector<std::int32_t>& DisparityChoice::choose(const std::uint16_t* costs) {
   switch (lanes_) {
-    case 16:
-      chooseOf<16>(costs);
-      break;
     case 32:
       chooseOf<32>(costs);
       break;
@@ -109,7 +106,7 @@ const std::vector<std::int32_t>& DisparityChoice::choose(const std::uint16_t* co
       chooseOf<256>(costs);
       break;
     default:
-      throw std::invalid_argument("disparity choice: lanes must be 16, 32, 64, 128 or 256, got " +
+      throw std::invalid_argument("disparity choice: lanes must be 32, 64, 128 or 256, got " +
                                   std::to_string(lanes_));
   }
   return chosen_;

@@ -24,7 +24,7 @@ constexpr std::int32_t kNoChoice = INT32_MIN;
 
 /// What the costs of a pixel belong to: lane k to disparity k - of_zero.
 struct ChoiceLanes {
-  int count = 64;    ///< 16, 32, 64, 128 or 256
+  int count = 64;    ///< 32, 64, 128 or 256
   int of_zero = 0;   ///< the lane of disparity 0
   int allowed = 64;  ///< lanes from here on are not chosen
 };

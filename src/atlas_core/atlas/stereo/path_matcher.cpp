@@ -211,9 +211,7 @@ PathMatcher::PathMatcher(cv::Size size, int range_px, const PathParams& params) 
   if (range_px < 1 || range_px > 256) reject("range_px", "in 1..256", range_px);
   if (size.width < 1 || size.height < 1)
     reject("width and height", "positive", std::min(size.width, size.height));
-  if (range_px <= 16)
-    rows_ = std::make_unique<RowsOf<16>>(size, range_px, params);
-  else if (range_px <= 32)
+  if (range_px <= 32)
     rows_ = std::make_unique<RowsOf<32>>(size, range_px, params);
   else if (range_px <= 64)
     rows_ = std::make_unique<RowsOf<64>>(size, range_px, params);

@@ -14,9 +14,9 @@
 namespace atlas {
 namespace {
 
-constexpr int kClip = 31;       // of a gradient; windows at edges are not ruled by them
-constexpr int kRoadLanes = 16;  // disparities around the road's
-constexpr int kRoadMiddle = 8;  // the lane of the road's own
+constexpr int kClip = 31;        // of a gradient; windows at edges are not ruled by them
+constexpr int kRoadLanes = 32;   // disparities around the road's
+constexpr int kRoadMiddle = 16;  // the lane of the road's own
 using Bytes = std::vector<std::uint8_t>;
 using Sums = std::vector<std::uint16_t>;
 
@@ -177,9 +177,7 @@ WindowMatcher::WindowMatcher(cv::Size size, int range_px, const WindowParams& pa
   if (range_px < 1 || range_px > 256) reject("range_px", "in 1..256", range_px);
   if (size.width < 1 || size.height < 1)
     reject("width and height", "positive", std::min(size.width, size.height));
-  if (range_px <= 16)
-    frontal_ = std::make_unique<FrontalOf<16>>(size, range_px, params);
-  else if (range_px <= 32)
+  if (range_px <= 32)
     frontal_ = std::make_unique<FrontalOf<32>>(size, range_px, params);
   else if (range_px <= 64)
     frontal_ = std::make_unique<FrontalOf<64>>(size, range_px, params);
