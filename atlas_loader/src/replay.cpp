@@ -87,6 +87,7 @@ atlas::WriterParams writerParams(Configuration& configuration, const ReplayOptio
   writers.frustum = configuration.section<atlas::FrustumWriterParams>("frustum_writer");
   writers.thermal = configuration.section<atlas::ThermalWriterParams>("thermal_writer");
   writers.overlay = configuration.section<atlas::OverlayWriterParams>("overlay_writer");
+  writers.grid = configuration.section<atlas::GridWriterParams>("grid_writer");
   configuration.section<atlas::TrajectoryWriterParams>("trajectory_writer");
   configuration.section<atlas::ObstacleWriterParams>("obstacle_writer");
   configuration.section<atlas::ObjectWriterParams>("object_writer");
@@ -97,7 +98,6 @@ atlas::WriterParams writerParams(Configuration& configuration, const ReplayOptio
   return writers;
 }
 
-/// Adds the stages in order of the data path; the configuration decides all their parameters.
 /// Colours come from depth images and decoded pictures, which not every camera has.
 void checkColourCameras(const atlas::MapWriterParams& map, const atlas::DepthParams& depth) {
   if (!map.map.colour) return;
@@ -107,6 +107,7 @@ void checkColourCameras(const atlas::MapWriterParams& map, const atlas::DepthPar
   }
 }
 
+/// Adds the stages in order of the data path; the configuration decides all their parameters.
 void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const ReplayOptions& options) {
   const auto decoder = configuration.section<VideoDecodeParams>("video_decoder");
   graph.beginThread();  // beside reading and unpacking
@@ -124,13 +125,14 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   params.camera_lidar = configuration.section<atlas::CameraLidarParams>("camera_lidar");
   params.objects = configuration.section<atlas::ObjectParams>("objects");
   params.local_map = configuration.section<atlas::LocalMapParams>("local_map");
+  params.occupancy = configuration.section<atlas::OccupancyParams>("occupancy");
   params.thermal = configuration.section<atlas::ThermalParams>("thermal");
   params.depth = configuration.section<atlas::DepthParams>("depth");
   addPipeline(graph, params);
   const atlas::WriterParams writers = writerParams(configuration, options);
+  checkColourCameras(writers.map, params.depth);
   configuration.rejectUnread();
   atlas::addWriters(graph, writers, options.out);
-  checkColourCameras(writers.map, params.depth);
 }
 
 }  // namespace

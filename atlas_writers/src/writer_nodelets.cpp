@@ -54,6 +54,7 @@ ATLAS_WRITER_NODELET(CloudWriter, atlas::bindCloudWriter(link, params, out));
 ATLAS_WRITER_NODELET(MapWriter, atlas::bindMapWriter(link, params, out));
 ATLAS_WRITER_NODELET(DepthWriter, atlas::bindDepthWriter(link, params, out));
 ATLAS_WRITER_NODELET(FrustumWriter, atlas::bindFrustumWriter(link, params, out));
+ATLAS_WRITER_NODELET(GridWriter, atlas::bindGridWriter(link, params, out));
 ATLAS_WRITER_NODELET(ThermalWriter, atlas::bindThermalWriter(link, params, out));
 ATLAS_WRITER_NODELET(ObstacleWriter, atlas::bindObstacleWriter(link, out));
 ATLAS_WRITER_NODELET(LineWriter, atlas::bindLineWriter(link, params, out));
@@ -70,6 +71,7 @@ PLUGINLIB_EXPORT_CLASS(atlas_writers::CloudWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::MapWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::DepthWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::FrustumWriterNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(atlas_writers::GridWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ThermalWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::ObstacleWriterNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(atlas_writers::LineWriterNodelet, nodelet::Nodelet)

@@ -43,6 +43,10 @@ void readParams(Reader& reader, FrustumWriterParams& p) {
   reader.read("cameras", p.cameras);
 }
 template <class Reader>
+void readParams(Reader& reader, GridWriterParams& p) {
+  reader.read("period_s", p.period_s);
+}
+template <class Reader>
 void readParams(Reader& reader, ThermalWriterParams& p) {
   reader.read("thermal_camera", p.thermal_camera);
   reader.readOptional("radiometric", p.dataset.radiometric);

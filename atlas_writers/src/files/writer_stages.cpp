@@ -32,6 +32,7 @@ void addWriters(LocalGraph& graph, const WriterParams& params, const std::string
   graph.add([&](Bus& bus) { return bindDepthWriter(bus, params.depth, out); });
   graph.add([&](Bus& bus) { return bindFrustumWriter(bus, params.frustum, out); });
   graph.add([&](Bus& bus) { return bindThermalWriter(bus, params.thermal, out); });
+  graph.add([&](Bus& bus) { return bindGridWriter(bus, params.grid, out); });
   graph.add([&](Bus& bus) { return bindObstacleWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindObjectWriter(bus, out); });
   graph.add([&](Bus& bus) { return bindStatusWriter(bus, out); });

@@ -13,6 +13,7 @@
 #include "files/cloud_writer.hpp"
 #include "files/depth_writer.hpp"
 #include "files/frustum_writer.hpp"
+#include "files/grid_writer_stage.hpp"
 #include "files/line_writer.hpp"
 #include "files/map_writer_stage.hpp"
 #include "files/object_writer.hpp"
@@ -53,6 +54,7 @@ struct WriterParams {
   MapWriterParams map;
   DepthWriterParams depth;
   FrustumWriterParams frustum;
+  GridWriterParams grid;
   ThermalWriterParams thermal;
   OverlayWriterParams overlay;
 };
@@ -169,8 +171,6 @@ StageFactory bindCloudWriter(Bus& bus, const CloudWriterParams& params, const st
   return [=] { return std::make_unique<CloudWriterStage>(params, out); };
 }
 template <class Bus>
-StageFactory bindMapWriter(Bus& bus, const MapWriterParams& params, const std::string& out) {
-  using S = MapWriterStage;
 void bindMapColours(Bus& bus, const MapWriterParams& params) {
   using S = MapWriterStage;
   const auto at = [&params](S::ColourInput input, std::size_t c = 0) {
@@ -192,12 +192,14 @@ void bindMapColours(Bus& bus, const MapWriterParams& params) {
   }
 }
 template <class Bus>
+StageFactory bindMapWriter(Bus& bus, const MapWriterParams& params, const std::string& out) {
+  using S = MapWriterStage;
+  validate(params);
   bus.template input<S, Anchor>(S::kAnchor, "anchor", [](S& s, const Anchor& a) { s.push(a); });
   inputs<S, BatchedSweepPtr>(bus, S::kFirstLidar, params.lidars, "/batches");
-  validate(params);
+  if (params.map.colour) bindMapColours(bus, params);
   return [=] { return std::make_unique<S>(params, out); };
 }
-  if (params.map.colour) bindMapColours(bus, params);
 template <class Bus>
 StageFactory bindDepthWriter(Bus& bus, const DepthWriterParams& params, const std::string& out) {
   inputs<DepthWriterStage, DepthImagePtr>(bus, 0, params.cameras, "/depth/image");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "report/evaluation_table.hpp"
+#include "report/grid_picture.hpp"
 #include "report/html.hpp"
 #include "report/map_picture.hpp"
 #include "report/number_text.hpp"
@@ -100,6 +101,7 @@ std::string gallerySection(const PageOptions& options, const std::vector<Traject
   addMap(options.out, trajectory, gallery);
   gallery.add("overlay.png", chooseOverlay(options.out), "camera overlay");
   gallery.add("depth.png", chooseDepth(options.out), "depth image");
+  gallery.add("grid.png", chooseGrid(options.out), "occupancy grid");
   gallery.add("thermal.png", chooseThermal(options.out), "thermal image");
   gallery.add("contact_sheet.png", contactSheet(options.out), "contact sheet");
   if (!options.screenshot.empty() && fs::exists(options.screenshot)) {

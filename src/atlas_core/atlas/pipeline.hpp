@@ -13,7 +13,10 @@
 //                                                           frustums (all cameras, merged)
 //   obstacles, frustums, <radar>/scan,
 //   batches, odometry                    -> objects      -> objects
-//   objects, cloud, frustums, odometry   -> local_map    -> local_map
+//   batches, odometry                    -> occupancy    -> grid, grid/velocity, grid/objects,
+//                                                           grid/risk
+//   objects, cloud, frustums, grid,
+//   odometry                             -> local_map    -> local_map
 //   <camera>/frustums, IR camera_info,
 //   batches                              -> thermal      -> camera_ir/projected_detections
 //   batches, <camera>/camera_info        -> depth        -> <camera>/depth/image
@@ -26,6 +29,7 @@
 #include <optional>
 
 #include "atlas/pipeline/camera_bindings.hpp"
+#include "atlas/pipeline/grid_bindings.hpp"
 #include "atlas/pipeline/lidar_bindings.hpp"
 #include "atlas/pipeline/positioning_bindings.hpp"
 #include "atlas/pipeline/scene_bindings.hpp"
@@ -41,6 +45,7 @@ struct PipelineParams {
   std::optional<LineParams> lines;  ///< none: no such stage
   CameraLidarParams camera_lidar;
   ObjectParams objects;
+  OccupancyParams occupancy;
   LocalMapParams local_map;
   ThermalParams thermal;
   DepthParams depth;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "atlas_ros/conversions.hpp"
+#include "atlas_ros/grid_conversions.hpp"
 #include "atlas_ros/object_conversions.hpp"
 #include "atlas_ros/point_cloud.hpp"
 
@@ -37,6 +38,7 @@ ATLAS_MESSAGE_OF(atlas::Frustums, atlas_msgs::FrustumArray);
 ATLAS_MESSAGE_OF(atlas::ProjectedDetections, atlas_msgs::ProjectedDetections);
 ATLAS_MESSAGE_OF(atlas::SensorStatus, atlas_msgs::SensorStatus);
 ATLAS_MESSAGE_OF(atlas::ProductOrigins, atlas_msgs::ProductOrigins);
+ATLAS_MESSAGE_OF(atlas::RiskAnswer, atlas_msgs::CollisionRisk);
 #undef ATLAS_MESSAGE_OF
 
 template <>
@@ -92,6 +94,23 @@ struct MessageOf<atlas::ObjectsPtr> {
   using Message = atlas_msgs::ObjectArray;
   static Message to(const atlas::ObjectsPtr& value) { return toMsg(*value); }
   static atlas::Outcome<atlas::ObjectsPtr> from(const Message& message) { return fromMsg(message); }
+};
+template <>
+struct MessageOf<atlas::SensorGridPtr> {
+  using Message = atlas_msgs::SensorGrid;
+  static Message to(const atlas::SensorGridPtr& value) { return toMsg(*value); }
+  static atlas::Outcome<atlas::SensorGridPtr> from(const Message& message) { return fromMsg(message); }
+};
+template <>
+struct MessageOf<atlas::OccupancyMapPtr> {
+  using Message = nav_msgs::OccupancyGrid;
+  static Message to(const atlas::OccupancyMapPtr& value) { return toMsg(*value); }
+  static atlas::Outcome<atlas::OccupancyMapPtr> from(const Message& message) { return fromMsg(message); }
+};
+template <>
+struct MessageOf<atlas::GridVelocities> {
+  using Message = atlas_msgs::VelocityGrid;
+  static Message to(const atlas::GridVelocities& value) { return toMsg(value); }
 };
 template <>
 struct MessageOf<atlas::LocalMapView> {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atlas_ros/grid_conversions.hpp"
 #include "atlas_ros/point_cloud.hpp"
 
 namespace atlas_ros {
@@ -112,6 +113,7 @@ atlas_msgs::LocalMap toMsg(const atlas::LocalMapView& view) {
   msg.objects = toMsg(view.objects);
   if (view.cloud) msg.cloud = toCloud(view.cloud->points, view.cloud->stamp, kMapFrame);
   for (const atlas::Frustums& frustums : view.frustums) msg.frustums.push_back(toMsg(frustums));
+  if (view.grid) msg.grid = toMsg(*view.grid);
   return msg;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "atlas/pipeline.hpp"
+#include "atlas_ros/grid_params.hpp"
 
 namespace atlas_ros {
 

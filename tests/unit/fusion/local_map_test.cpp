@@ -44,6 +44,9 @@ TEST(LocalMap, WhatWasAroundTheVehicleAtATime) {
   frustums.frustums.resize(2);
   frustums.frustums[1].position = {60.0, 0.0, 0.0};
   map.add(frustums);
+  auto grid = std::make_shared<OccupancyMap>();
+  grid->stamp = at(3.0);
+  map.add(OccupancyMapPtr(grid));
   const auto view = map.at(at(4.95));
   ASSERT_TRUE(view);
   EXPECT_NEAR(view->T_map_imu.translation.x(), 49.5, 1e-6);
@@ -52,6 +55,8 @@ TEST(LocalMap, WhatWasAroundTheVehicleAtATime) {
   EXPECT_EQ(view->cloud->points.size(), 6U) << "20, 30, ..., 70 m";
   ASSERT_EQ(view->frustums.size(), 1U);
   EXPECT_EQ(view->frustums[0].frustums.size(), 1U);
+  EXPECT_EQ(view->grid, grid);
+  EXPECT_EQ(map.at(at(2.9))->grid, nullptr);
   EXPECT_TRUE(map.at(at(0.5))->objects.objects.empty()) << "before the first objects";
   EXPECT_EQ(map.at(at(0.5))->cloud, nullptr);
   EXPECT_EQ(map.at(at(6.0)).reason(), Reason::kPoseNotReached);
@@ -80,7 +85,7 @@ TEST(LocalMapStage, GivesAMapAtTheChosenRate) {
   LocalMapStage stage(params);
   std::vector<Stamp> stamps;
   stage.on_map = [&](const LocalMapView& view) { stamps.push_back(view.stamp); };
-  for (std::size_t input : {1U, 2U, 3U}) stage.finish(input);
+  for (std::size_t input : {1U, 2U, 3U, 4U}) stage.finish(input);
   for (int i = 0; i <= 100; ++i) stage.push(pose(0.02 * i));
   stage.finish(0);
   ASSERT_EQ(stamps.size(), 3U);

@@ -64,6 +64,7 @@ std::optional<Reason> LocalMap::add(const Odometry& odometry) {
 std::optional<Reason> LocalMap::add(const ObjectsPtr& objects) { return append(objects_, objects); }
 std::optional<Reason> LocalMap::add(const MapCloudPtr& cloud) { return append(clouds_, cloud); }
 std::optional<Reason> LocalMap::add(const Frustums& frustums) { return append(frustums_, frustums); }
+std::optional<Reason> LocalMap::add(const OccupancyMapPtr& grid) { return append(grids_, grid); }
 
 void LocalMap::forget(Stamp newest) {
   const Stamp oldest = newest - fromSeconds(params_.history_s);
@@ -74,6 +75,7 @@ void LocalMap::forget(Stamp newest) {
   drop(objects_);
   drop(clouds_);
   drop(frustums_);
+  drop(grids_);
 }
 
 Objects LocalMap::objectsAround(const Eigen::Vector2d& place, double radius_m, Stamp stamp) const {
@@ -98,6 +100,7 @@ Outcome<LocalMapView> LocalMap::at(Stamp stamp, double radius_m) const {
   const Eigen::Vector2d place = pose->translation.head<2>();
   view.objects = objectsAround(place, radius_m, stamp);
   if (const MapCloudPtr* cloud = newestBefore(clouds_, stamp)) view.cloud = cutOut(*cloud, place, radius_m);
+  if (const OccupancyMapPtr* grid = newestBefore(grids_, stamp)) view.grid = *grid;
   for (const Frustums& frustums : frustums_) {
     if (frustums.stamp > stamp || toSeconds(stamp - frustums.stamp) > params_.frustum_window_s) continue;
     Frustums near = frustums;
@@ -116,7 +119,7 @@ Outcome<LocalMapView> LocalMap::newest(double radius_m) const {
 }
 
 LocalMapStage::LocalMapStage(const LocalMapParams& params)
-    : Stage("local_map", {"odometry", "objects", "cloud", "frustums"}),
+    : Stage("local_map", {"odometry", "objects", "cloud", "frustums", "grid"}),
       map_(params),
       period_(fromSeconds(params.period_s)) {}
 
@@ -131,6 +134,7 @@ void LocalMapStage::push(const Odometry& odometry) { store(kOdometry, odometry.s
 void LocalMapStage::push(const ObjectsPtr& objects) { store(kObjects, objects->stamp, objects); }
 void LocalMapStage::push(const MapCloudPtr& cloud) { store(kCloud, cloud->stamp, cloud); }
 void LocalMapStage::push(const Frustums& frustums) { store(kFrustums, frustums.stamp, frustums); }
+void LocalMapStage::push(const OccupancyMapPtr& grid) { store(kGrid, grid->stamp, grid); }
 
 void LocalMapStage::emitBefore(Stamp stamp) {
   if (period_ <= 0) return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The Local Map of the paper (II-C, III-E) as a container: the newest seconds of poses, objects, clouds and
-// frustums, and the question what was around the vehicle at a time. A library for offline runs, a topic and a
-// service for others.
+// The Local Map of the paper (II-C, III-E) as a container: the newest seconds of poses, objects, clouds,
+// frustums and occupancy grids, and the question what was around the vehicle at a time. A library for offline
+// runs, a topic and a service for others.
 #pragma once
 
 #include <deque>
@@ -13,6 +13,7 @@
 #include "atlas/base/stage.hpp"
 #include "atlas/base/trajectory.hpp"
 #include "atlas/sensor/object.hpp"
+#include "atlas/sensor/occupancy_map.hpp"
 
 namespace atlas {
 
@@ -33,6 +34,7 @@ struct LocalMapView {
   Objects objects;                 ///< the newest at or before the stamp
   MapCloudPtr cloud;               ///< points within the radius of the newest cloud; null when there is none
   std::vector<Frustums> frustums;  ///< of the window before the stamp, those within the radius, oldest first
+  OccupancyMapPtr grid;            ///< the newest at or before the stamp, whole; null when there is none
 };
 
 class LocalMap {
@@ -43,6 +45,7 @@ class LocalMap {
   std::optional<Reason> add(const ObjectsPtr& objects);
   std::optional<Reason> add(const MapCloudPtr& cloud);
   std::optional<Reason> add(const Frustums& frustums);
+  std::optional<Reason> add(const OccupancyMapPtr& grid);
 
   /// kNoPoseYet before the history, kPoseNotReached after the newest pose, kPoseGap between.
   [[nodiscard]] Outcome<LocalMapView> at(Stamp stamp, double radius_m) const;
@@ -62,17 +65,19 @@ class LocalMap {
   std::deque<ObjectsPtr> objects_;
   std::deque<MapCloudPtr> clouds_;
   std::deque<Frustums> frustums_;
+  std::deque<OccupancyMapPtr> grids_;
 };
 
 /// Stage: fills a LocalMap, gives it out at a chosen rate.
 class LocalMapStage : public Stage {
  public:
-  enum Input : std::size_t { kOdometry, kObjects, kCloud, kFrustums };
+  enum Input : std::size_t { kOdometry, kObjects, kCloud, kFrustums, kGrid };
   explicit LocalMapStage(const LocalMapParams& params);
   void push(const Odometry& odometry);
   void push(const ObjectsPtr& objects);
   void push(const MapCloudPtr& cloud);
   void push(const Frustums& frustums);
+  void push(const OccupancyMapPtr& grid);
   /// Every period_s of event time, after everything up to its stamp has come.
   std::function<void(const LocalMapView&)> on_map;
   [[nodiscard]] const LocalMap& map() const { return map_; }

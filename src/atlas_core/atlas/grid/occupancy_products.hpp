@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The occupancy filter's answer as it leaves the stage: the grid in the form of a nav_msgs/OccupancyGrid, so
-// that what is written offline and what is written from the topic are the same bytes, and wrappers that tell
-// the topics of one frame apart.
+// The occupancy filter's answer as it leaves the stage: one frame as the values of its four topics.
 #pragma once
 
-#include <cstdint>
-#include <memory>
 #include <optional>
-#include <vector>
 
 #include "atlas/grid/occupancy_chain.hpp"
+#include "atlas/sensor/occupancy_map.hpp"
 
 namespace atlas {
 
-/// Row by row, x along a row, y from row to row; frame map.
-struct OccupancyMap {
-  Stamp stamp = 0;
-  float resolution_m = 0;                            ///< side of a cell; single precision, as in the message
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< lower corner of the first cell; z of the road
-  std::uint32_t columns = 0, rows = 0;               ///< both 0: the vehicle's pose was not known
-  std::vector<std::int8_t> percent;                  ///< P(occupied), 0..100; -1 = unknown
-};
-using OccupancyMapPtr = std::shared_ptr<const OccupancyMap>;
-
-/// A cell whose belief rests on no measurement by more than `unknown_above` is unknown.
+/// Topic grid. A cell whose belief rests on no measurement by more than `unknown_above` is unknown.
 [[nodiscard]] OccupancyMapPtr occupancyMap(const OccupancyFrame& frame, double unknown_above);
 
 /// Topic grid/velocity.

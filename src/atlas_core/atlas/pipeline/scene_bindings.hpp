@@ -37,6 +37,7 @@ StageFactory bindLocalMap(Bus& bus, const LocalMapParams& params) {
   bus.template input<S, ObjectsPtr>(S::kObjects, "objects", [](S& s, const ObjectsPtr& o) { s.push(o); });
   bus.template input<S, MapCloudPtr>(S::kCloud, "cloud", [](S& s, const MapCloudPtr& c) { s.push(c); });
   bus.template input<S, Frustums>(S::kFrustums, "frustums", [](S& s, const Frustums& f) { s.push(f); });
+  bus.template input<S, OccupancyMapPtr>(S::kGrid, "grid", [](S& s, const OccupancyMapPtr& g) { s.push(g); });
   const auto map = bus.template output<LocalMapView>("local_map");
   return [=] {
     auto stage = std::make_unique<S>(params);
