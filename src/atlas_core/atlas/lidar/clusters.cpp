@@ -14,7 +14,7 @@ namespace {
 /// Share of the tolerance within which a low piece is the rest of a tall one: what stands in front of a wall
 /// keeps some distance, a wall's own parts do not.
 constexpr float kTight = 0.3F;
-constexpr int kRestSteps = 3;  ///< pieces that a rest may be away from the tall one
+constexpr int kRestSteps = 8;  ///< pieces that a rest may be away from the tall one
 
 /// Disjoint sets; the smaller number is the root, so roots do not depend on the order of unions.
 class DisjointSets {

@@ -74,6 +74,36 @@ bool isPartOf(const Obstacle& small, const Obstacle& large) {
          std::abs(d.z()) <= 0.5 * (small.size.z() + large.size.z()) + kRoofGap_m;
 }
 
+constexpr double kNarrowestCar_m = 1.2, kWidestCar_m = 2.2, kLongestCar_m = 5.2;
+constexpr double kFaceDepth_m = 0.5;  ///< of what is seen of a front or a rear
+constexpr double kBonnet_m = 1.5;     ///< between front and windscreen
+constexpr double kAside_m = 0.4;      ///< of the middles of the two: each may be seen in part
+constexpr double kOverlapUpwards_m = 0.25, kGapUpwards_m = 0.8;
+constexpr double kSkewed = 0.26;  ///< sine of 15 deg
+
+/// The front or rear of a car, and its cabin behind a bonnet that is seen at too grazing an angle to return
+/// anything: equally wide, in line, the cabin higher and farther.
+bool isFaceOf(const Obstacle& face, const Obstacle& cabin, const Eigen::Vector3d& vehicle_map) {
+  const bool lengthwise = face.size.x() < face.size.y();  // its yaw is the car's
+  const double depth_m = lengthwise ? face.size.x() : face.size.y(),
+               width_m = lengthwise ? face.size.y() : face.size.x();
+  if (depth_m > kFaceDepth_m || width_m < kNarrowestCar_m || width_m > kWidestCar_m) return false;
+  const double yaw_rad = face.yaw_rad + (lengthwise ? 0.0 : 0.5 * M_PI);
+  const Eigen::Vector3d along(std::cos(yaw_rad), std::sin(yaw_rad), 0.0), across(-along.y(), along.x(), 0.0),
+      d = cabin.center - face.center;
+  const double c = std::abs(std::cos(cabin.yaw_rad - yaw_rad)),
+               s = std::abs(std::sin(cabin.yaw_rad - yaw_rad));
+  const double cabin_length_m = c * cabin.size.x() + s * cabin.size.y(),
+               cabin_width_m = s * cabin.size.x() + c * cabin.size.y();
+  const double gap_m = std::abs(along.dot(d)) - 0.5 * (cabin_length_m + depth_m);
+  const double up_m = d.z() - 0.5 * (cabin.size.z() + face.size.z());
+  return std::min(c, s) <= kSkewed && cabin_width_m >= kNarrowestCar_m && cabin_width_m <= kWidestCar_m &&
+         std::abs(across.dot(d)) <= kAside_m && gap_m <= kBonnet_m &&
+         depth_m + gap_m + cabin_length_m <= kLongestCar_m && up_m >= -kOverlapUpwards_m &&
+         up_m <= kGapUpwards_m &&
+         along.dot(face.center - vehicle_map) * along.dot(d) > 0.0;  // the cabin is behind it
+}
+
 /// A box for each cluster; a cluster that is part of a larger one is given to it, the largest first.
 std::vector<Obstacle> boxesOf(const std::vector<LidarPoint>& points,
                               std::vector<std::vector<std::uint32_t>>& clusters,
@@ -89,7 +119,10 @@ std::vector<Obstacle> boxesOf(const std::vector<LidarPoint>& points,
     const std::size_t before = whole.size();
     for (std::size_t j = i + 1; j < by_size.size() && before > 0; ++j) {
       std::vector<std::uint32_t>& part = clusters[by_size[j]];
-      if (part.empty() || !isPartOf(boxes[by_size[j]], boxes[by_size[i]])) continue;
+      const Obstacle &large = boxes[by_size[i]], &small = boxes[by_size[j]];
+      if (part.empty() || !(isPartOf(small, large) || isFaceOf(small, large, vehicle_map) ||
+                            isFaceOf(large, small, vehicle_map)))
+        continue;
       whole.insert(whole.end(), part.begin(), part.end());
       part.clear();
     }
