@@ -26,6 +26,8 @@ int main(int argc, char** argv) {
   app.add_option("--write", options.write, "also write: deskewed, lines, map_colour")->delimiter(',');
   app.add_flag("--smooth", options.smooth,
                "two passes: position and smooth first, then de-skew and map with the smoothed trajectory");
+  app.add_flag("--stereo", options.stereo,
+               "match the images of the stereo pair and take them into the occupancy grid");
   app.add_flag("--one-thread", options.one_thread,
                "work in one thread instead of several; the outputs are the same");
   CLI11_PARSE(app, argc, argv);

@@ -107,12 +107,27 @@ void checkColourCameras(const atlas::MapWriterParams& map, const atlas::DepthPar
   }
 }
 
+/// The stereo pair's images are decoded, its ground goes into the occupancy grid (config/<rig>_stereo.yaml
+/// does the same for the nodelets).
+void addStereo(const atlas::StereoStageParams& stereo, VideoDecodeParams& decoder,
+               atlas::PipelineParams& params) {
+  for (const std::string& camera : {stereo.left_camera, stereo.right_camera}) {
+    if (std::count(decoder.cameras.begin(), decoder.cameras.end(), camera) == 0)
+      decoder.cameras.push_back(camera);
+  }
+  params.occupancy.stereo = {stereo.name};
+  params.stereo = stereo;
+}
+
 /// Adds the stages in order of the data path; the configuration decides all their parameters.
 void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const ReplayOptions& options) {
-  const auto decoder = configuration.section<VideoDecodeParams>("video_decoder");
+  auto decoder = configuration.section<VideoDecodeParams>("video_decoder");
+  atlas::PipelineParams params;
+  params.occupancy = configuration.section<atlas::OccupancyParams>("occupancy");
+  const auto stereo = configuration.section<atlas::StereoStageParams>("stereo");
+  if (options.stereo) addStereo(stereo, decoder, params);
   graph.beginThread();  // beside reading and unpacking
   graph.add([&](atlas::LocalGraph::Bus& bus) { return bindVideoDecoder(bus, decoder); });
-  atlas::PipelineParams params;
   params.monitor = configuration.section<atlas::MonitorParams>("sensor_monitor");
   params.localization = configuration.section<atlas::LocalizationParams>("localization");
   if (options.smooth)
@@ -125,7 +140,6 @@ void buildGraph(atlas::LocalGraph& graph, Configuration& configuration, const Re
   params.camera_lidar = configuration.section<atlas::CameraLidarParams>("camera_lidar");
   params.objects = configuration.section<atlas::ObjectParams>("objects");
   params.local_map = configuration.section<atlas::LocalMapParams>("local_map");
-  params.occupancy = configuration.section<atlas::OccupancyParams>("occupancy");
   params.thermal = configuration.section<atlas::ThermalParams>("thermal");
   params.depth = configuration.section<atlas::DepthParams>("depth");
   addPipeline(graph, params);

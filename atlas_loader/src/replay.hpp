@@ -16,6 +16,7 @@ struct ReplayOptions {
   std::string config;              ///< YAML file; "" = packaged
   std::vector<std::string> write;  ///< extra outputs: "deskewed", "lines", "map_colour"
   bool one_thread = false;         ///< instead of several, with the same outputs
+  bool stereo = false;             ///< with the stereo pair of the configuration
   bool smooth = false;             ///< two passes: positioning and smoothing first
 };
 

@@ -12,6 +12,7 @@ void addPipeline(LocalGraph& graph, const PipelineParams& params) {
   if (params.lines) graph.add([&](LocalGraph::Bus& bus) { return bindLines(bus, *params.lines); });
   graph.add([&](LocalGraph::Bus& bus) { return bindCameraLidar(bus, params.camera_lidar); });
   graph.add([&](LocalGraph::Bus& bus) { return bindObjects(bus, params.objects); });
+  if (params.stereo) graph.add([&](LocalGraph::Bus& bus) { return bindStereo(bus, *params.stereo); });
   graph.add([&](LocalGraph::Bus& bus) { return bindOccupancy(bus, params.occupancy); });
   graph.add([&](LocalGraph::Bus& bus) { return bindLocalMap(bus, params.local_map); });
   graph.add([&](LocalGraph::Bus& bus) { return bindThermal(bus, params.thermal); });

@@ -13,7 +13,9 @@
 //                                                           frustums (all cameras, merged)
 //   obstacles, frustums, <radar>/scan,
 //   batches, odometry                    -> objects      -> objects
-//   batches, odometry                    -> occupancy    -> grid, grid/velocity, grid/objects,
+//   images of two cameras (if asked for) -> stereo       -> stereo/disparity, stereo/surface,
+//                                                           stereo/u_disparity, stereo/ground
+//   batches, stereo/ground, odometry     -> occupancy    -> grid, grid/velocity, grid/objects,
 //                                                           grid/risk
 //   objects, cloud, frustums, grid,
 //   odometry                             -> local_map    -> local_map
@@ -45,6 +47,7 @@ struct PipelineParams {
   std::optional<LineParams> lines;  ///< none: no such stage
   CameraLidarParams camera_lidar;
   ObjectParams objects;
+  std::optional<StereoStageParams> stereo;  ///< none: no such stage
   OccupancyParams occupancy;
   LocalMapParams local_map;
   ThermalParams thermal;

@@ -150,4 +150,28 @@ atlas::Outcome<atlas::SensorGridPtr> fromMsg(const atlas_msgs::SensorGrid& msg) 
   return atlas::SensorGridPtr(grid);
 }
 
+stereo_msgs::DisparityImage toMsg(const atlas::StereoDisparity& disparity) {
+  stereo_msgs::DisparityImage msg;
+  msg.header.stamp = toTime(disparity.stamp);
+  msg.header.frame_id = disparity.frame;
+  const cv::Mat& counts = disparity.image.disparity;
+  msg.image.header = msg.header;
+  if (counts.empty()) return msg;
+  atlas::Image image;
+  image.stamp = disparity.stamp;
+  image.frame = disparity.frame;
+  image.format = "32FC1";
+  counts.convertTo(image.pixels, CV_32F, 1.0 / atlas::kDisparityScale);
+  image.pixels.setTo(-1.0F, counts == 0);
+  msg.image = toImageMsg(image);
+  msg.f = static_cast<float>(disparity.rig.focal_px);
+  msg.T = static_cast<float>(disparity.rig.baseline_m);
+  msg.min_disparity = 0.0F;
+  msg.max_disparity = static_cast<float>(disparity.range_px);
+  msg.delta_d = 1.0F / atlas::kDisparityScale;
+  msg.valid_window.width = static_cast<std::uint32_t>(counts.cols);
+  msg.valid_window.height = static_cast<std::uint32_t>(counts.rows);
+  return msg;
+}
+
 }  // namespace atlas_ros

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The YAML keys of the occupancy filter (compare stage_params.hpp).
+// The YAML keys of the stereo camera and the occupancy filter (compare stage_params.hpp).
 #pragma once
 
 #include <map>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "atlas/grid/occupancy_chain.hpp"
+#include "atlas/stereo/stereo_stage.hpp"
 
 namespace atlas_ros {
 
@@ -24,6 +25,28 @@ void readChoice(Reader& reader, const std::string& key, const std::map<std::stri
     throw std::invalid_argument(key + " must be one of " + known + ", got '" + word + "'");
   }
   value = choice->second;
+}
+
+template <class Reader>
+void readParams(Reader& reader, atlas::StereoStageParams& p) {
+  reader.readOptional("name", p.name);
+  reader.read("left_camera", p.left_camera);
+  reader.read("right_camera", p.right_camera);
+  reader.readOptional("max_stamp_difference_s", p.max_stamp_difference_s);
+  reader.read("width_px", p.width_px);
+  reader.read("range_px", p.matcher.range_px);
+  reader.readOptional("method", p.matcher.method);
+  reader.readOptional("aggregation", p.matcher.aggregation);
+  reader.readOptional("speckle_px", p.matcher.speckle_px);
+  reader.readOptional("camera_height_m", p.matcher.camera_height_m);
+  reader.readOptional("camera_pitch_deg", p.matcher.camera_pitch_deg);
+  reader.readOptional("false_positive", p.u_disparity.false_positive);
+  reader.readOptional("false_negative", p.u_disparity.false_negative);
+  reader.readOptional("max_height_m", p.u_disparity.max_height_m);
+  reader.readOptional("disparity_sigma_px", p.u_disparity.disparity_sigma_px);
+  reader.readOptional("ground_ahead_m", p.ground_ahead_m);
+  reader.readOptional("ground_width_m", p.ground_width_m);
+  reader.readOptional("ground_cell_m", p.ground_cell_m);
 }
 
 template <class Reader>

@@ -102,6 +102,11 @@ struct MessageOf<atlas::SensorGridPtr> {
   static atlas::Outcome<atlas::SensorGridPtr> from(const Message& message) { return fromMsg(message); }
 };
 template <>
+struct MessageOf<atlas::StereoDisparityPtr> {
+  using Message = stereo_msgs::DisparityImage;
+  static Message to(const atlas::StereoDisparityPtr& value) { return toMsg(*value); }
+};
+template <>
 struct MessageOf<atlas::OccupancyMapPtr> {
   using Message = nav_msgs::OccupancyGrid;
   static Message to(const atlas::OccupancyMapPtr& value) { return toMsg(*value); }

@@ -68,6 +68,7 @@ TEST(Configurations, EveryStageSectionIsComplete) {
     check("depth", atlas::DepthParams());
     check("objects", atlas::ObjectParams());
     check("local_map", atlas::LocalMapParams());
+    check("stereo", atlas::StereoStageParams());
     check("occupancy", atlas::OccupancyParams());
     check("sensor_monitor", atlas::MonitorParams());
   }
