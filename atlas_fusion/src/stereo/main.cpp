@@ -3,7 +3,7 @@
 // pairs of two folders (files of the same name, in the order of their names, as the images of a drive). For
 // each pair
 //   OUT             16-bit PNG, disparity x 256, 0 = unknown
-//   OUT_road.png    8-bit PNG beside it: 255 road, 128 obstacle, 0 unknown
+//   OUT_road.png    8-bit PNG beside it: 255 road, 127 obstacle, 0 unknown
 // Exit status 0: written, 2: wrong arguments, a calibration or image that cannot be used.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -69,7 +69,7 @@ void writeImage(const fs::path& path, const cv::Mat& image) {
 /// For the eye as for programs.
 cv::Mat roadMask(const cv::Mat& surface) {
   cv::Mat mask(surface.size(), CV_8UC1, cv::Scalar(0));
-  mask.setTo(128, surface == static_cast<int>(atlas::SurfaceLabel::kObstacle));
+  mask.setTo(127, surface == static_cast<int>(atlas::SurfaceLabel::kObstacle));
   mask.setTo(255, surface == static_cast<int>(atlas::SurfaceLabel::kRoad));
   return mask;
 }
