@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Nodelet: lidar layers and stereo grids become an occupancy grid with velocities, objects and collision risk.
+// Nodelet: lidar layers and stereo grids become an occupancy grid with velocities, objects and collision
+// risk.
 #include <pluginlib/class_list_macros.hpp>
 
 #include "atlas_ros/stage_nodelet.hpp"
