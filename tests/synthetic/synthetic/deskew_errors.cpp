@@ -34,7 +34,10 @@ DeskewErrors::DeskewErrors(std::filesystem::path truth, const Geodetic& run_anch
 
 std::string DeskewErrors::motionAt(Stamp stamp) const {
   constexpr Duration kHalf = 50 * kMillisecond;
-  const auto a = motion_.inMap().at(stamp - kHalf), b = motion_.inMap().at(stamp);
+  // in the motion that corrections are no part of: finding the heading is no turn
+  const Outcome<Trajectory> poses = motion_.around(stamp, stamp - kHalf, stamp);
+  if (!poses) return "unknown";
+  const auto a = poses->at(stamp - kHalf), b = poses->at(stamp);
   if (!a || !b) return "unknown";
   const double dt_s = toSeconds(kHalf);
   if ((b->translation - a->translation).norm() < kStanding_mps * dt_s) return "standing";
