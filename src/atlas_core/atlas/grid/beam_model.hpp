@@ -65,6 +65,15 @@ class BeamModel {
     std::vector<float> start_m, rise;  ///< height above the road of the beam: start + rise * range
     std::vector<float> end_m, hit;     ///< range of an obstacle, 0: none; how surely it is one, 0..1
   };
+  struct Ray {
+    double bin = 0;  ///< azimuth
+    double range = 0, rise = 0, sure = 0;
+    double slope_up = 0, slope_down = 0;  ///< of the range per bin towards higher and lower azimuths
+    bool returned = false;
+  };
+  [[nodiscard]] std::vector<Ray> raysOf(const LidarLayer& layer, const Pose& T_map_lidar,
+                                        const RoadPlane& road) const;
+  static void bridge(std::vector<Ray>& rays, double spacing_bins);
   void fillBins(const LidarLayer& layer, const Pose& T_map_lidar, const RoadPlane& road);
   [[nodiscard]] double rangeSigma() const;  ///< s of the equations, m
   [[nodiscard]] double hitReach() const;    ///< a of the equations, m

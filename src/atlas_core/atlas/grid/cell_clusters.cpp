@@ -6,12 +6,15 @@
 #include <cmath>
 #include <utility>
 
+#include "atlas/lidar/oriented_box.hpp"
+
 namespace atlas {
 namespace {
 
-constexpr double kStandingVariance = 0.1;  ///< m^2/s^2, of a cell that surely stands
-constexpr double kAlike_sq = 4.0;          ///< Mahalanobis distance of velocities that may be the same
-constexpr float kSeen = 0.55F;             ///< evidence of a cell that a sensor sees occupied
+constexpr double kStandingVariance = 0.1;   ///< m^2/s^2, of a cell that surely stands
+constexpr double kAlike_sq = 4.0;           ///< Mahalanobis distance of velocities that may be the same
+constexpr std::size_t kCellsOfOutline = 8;  ///< fewer show no sides
+constexpr float kSeen = 0.55F;              ///< evidence of a cell that a sensor sees occupied
 
 /// Velocity of the thing in a cell, standing or moving.
 ClusterCell cellAt(const ClusteringInput& input, int column, int row) {
@@ -27,8 +30,9 @@ ClusterCell cellAt(const ClusteringInput& input, int column, int row) {
   const double moves = 1.0 - cell.static_share;
   const Eigen::Vector2d v(cells.vx_mps[i], cells.vy_mps[i]);
   cell.velocity = moves * v;
-  const double spread = 0.5 * (cells.var_xx[i] + cells.var_yy[i]);
-  cell.variance = kStandingVariance + moves * spread + moves * (1.0 - moves) * 0.5 * v.squaredNorm();
+  // of one side of a car nobody can tell whether it stands: that is an uncertainty, not a velocity of its own
+  cell.variance = kStandingVariance + moves * (cells.var_xx[i] + cells.var_yy[i]) +
+                  moves * (1.0 - moves) * v.squaredNorm();
   return cell;
 }
 
@@ -105,6 +109,21 @@ GroundBox principalBox(const Cluster& cells, double cell_m) {
   GroundBox box = boxAlong(cells, 0.5 * std::atan2(2.0 * xy, xx - yy), cell_m);
   if (box.width > box.length) box = boxAlong(cells, box.yaw_rad + M_PI / 2.0, cell_m);
   return box;
+}
+
+GroundBox outlineBox(const Cluster& cells, const Eigen::Vector2d& seen_from_map, double cell_m) {
+  if (cells.size() < kCellsOfOutline) return principalBox(cells, cell_m);
+  const Eigen::Vector2d origin = cells.front().position;  // floats are exact enough around it
+  std::vector<LidarPoint> points(cells.size());
+  std::vector<std::uint32_t> members(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    points[i].x = static_cast<float>(cells[i].position.x() - origin.x());
+    points[i].y = static_cast<float>(cells[i].position.y() - origin.y());
+    members[i] = static_cast<std::uint32_t>(i);
+  }
+  const Eigen::Vector2d eye = seen_from_map - origin;
+  const Outcome<Obstacle> fit = fitBox(points, members, {eye.x(), eye.y(), 0.0});
+  return boxAlong(cells, fit->yaw_rad, cell_m);
 }
 
 }  // namespace atlas

@@ -17,7 +17,7 @@ namespace atlas {
 struct ClusterCell {
   Eigen::Vector2d position;  ///< m, map
   Eigen::Vector2d velocity;  ///< m/s, map
-  double variance = 0;       ///< m^2/s^2, of each component
+  double variance = 0;       ///< m^2/s^2, of both components together
   double weight = 0;         ///< P(occupied)
   float static_share = 0;
   float top_m = 0;          ///< NaN: unknown
@@ -50,5 +50,8 @@ struct GroundBox {
 [[nodiscard]] GroundBox boxAlong(const Cluster& cells, double yaw_rad, double cell_m);
 /// The same along the cells' principal axis, length >= width.
 [[nodiscard]] GroundBox principalBox(const Cluster& cells, double cell_m);
+/// The same along the sides that the sensor sees (lidar/oriented_box.hpp): of two sides of a car, an L, the
+/// principal axis is the diagonal. The principal box of a few cells.
+[[nodiscard]] GroundBox outlineBox(const Cluster& cells, const Eigen::Vector2d& seen_from_map, double cell_m);
 
 }  // namespace atlas

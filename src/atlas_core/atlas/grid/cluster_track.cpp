@@ -12,9 +12,11 @@ constexpr double kPositionSigma_m = 0.2;    ///< of a side, from cells of 0.2 m 
 constexpr double kVelocitySigma_mps = 0.8;  ///< least, of the mean of cells: they err together
 constexpr double kIndependentCells = 4.0;   ///< of a cluster, at most
 constexpr double kFirstSpeedSigma_mps = 5.0;
-constexpr double kHeadingSpeed_mps = 1.2;  ///< slower things do not show where their front is
-constexpr double kShrink = 0.99;           ///< of a size that is not seen any more, each update
-constexpr double kSmooth = 0.3;            ///< weight of the newest size and direction of standing things
+constexpr double kCorrelatedUpdates = 6.0;  ///< in so many steps cells err in the same way
+constexpr double kStands = 0.8;             ///< static share of a thing that surely stands
+constexpr double kHeadingSpeed_mps = 1.2;   ///< slower things do not show where their front is
+constexpr double kShrink = 0.98;            ///< of a size that is not seen any more, each update
+constexpr double kSmooth = 0.3;             ///< weight of the newest size and direction of standing things
 constexpr std::size_t kRecent = 16;
 constexpr double kDefaultHeight_m = 1.6;
 
@@ -48,9 +50,10 @@ double middleAlong(double low, double high, double sensor, double size) {
 
 }  // namespace
 
-ClusterTrack::ClusterTrack(std::uint32_t id, Stamp stamp, const Cluster& cells, double cell_m)
+ClusterTrack::ClusterTrack(std::uint32_t id, Stamp stamp, const Cluster& cells,
+                           const Eigen::Vector2d& seen_from_map, double cell_m)
     : id_(id), stamp_(stamp), first_seen_(stamp), last_seen_(stamp) {
-  const GroundBox box = principalBox(cells, cell_m);
+  const GroundBox box = outlineBox(cells, seen_from_map, cell_m);
   const Mean mean = meanOf(cells);
   state_ << box.center, mean.velocity;
   covariance_.setZero();
@@ -61,6 +64,7 @@ ClusterTrack::ClusterTrack(std::uint32_t id, Stamp stamp, const Cluster& cells, 
   length_ = box.length;
   width_ = box.width;
   static_share_ = mean.static_share;
+  cells_ = cells.size();
   recent_.push_back(true);
 }
 
@@ -81,7 +85,7 @@ bool ClusterTrack::headingKnown() const {
   return speed > kHeadingSpeed_mps && speed * speed > 9.0 * std::max(covariance_(2, 2), covariance_(3, 3));
 }
 
-void ClusterTrack::turnBox(const Cluster& cells, double cell_m) {
+void ClusterTrack::turnBox(const Cluster& cells, const Eigen::Vector2d& seen_from_map, double cell_m) {
   if (headingKnown()) {
     const double heading = std::atan2(state_(3), state_(2));
     if (!by_heading_) {
@@ -102,7 +106,7 @@ void ClusterTrack::turnBox(const Cluster& cells, double cell_m) {
     width_ = std::max(kShrink * width_, seen.width);
     return;
   }
-  const GroundBox seen = principalBox(cells, cell_m);
+  const GroundBox seen = outlineBox(cells, seen_from_map, cell_m);
   const double turn = std::remainder(seen.yaw_rad - yaw_rad_, M_PI);
   yaw_rad_ += std::abs(turn) < M_PI / 4.0 ? kSmooth * turn : turn;
   length_ += kSmooth * (seen.length - length_);
@@ -116,7 +120,7 @@ void ClusterTrack::update(const Cluster& cells, const Eigen::Vector2d& seen_from
   }
   const Cluster& used = seen.empty() ? cells : seen;
   const Mean mean = meanOf(used);
-  turnBox(used, cell_m);
+  turnBox(used, seen_from_map, cell_m);
   const GroundBox box = boxAlong(used, yaw_rad_, cell_m);
   const Eigen::Vector2d along(std::cos(yaw_rad_), std::sin(yaw_rad_)), across(-along.y(), along.x());
   const auto middle = [&](const Eigen::Vector2d& axis, double half, double size) {
@@ -128,8 +132,8 @@ void ClusterTrack::update(const Cluster& cells, const Eigen::Vector2d& seen_from
       mean.velocity;
   Eigen::Matrix4d R = Eigen::Matrix4d::Zero();
   R.diagonal().head<2>().setConstant(kPositionSigma_m * kPositionSigma_m);
-  R.diagonal().tail<2>().setConstant(kVelocitySigma_mps * kVelocitySigma_mps +
-                                     mean.variance / kIndependentCells);
+  R.diagonal().tail<2>().setConstant(
+      kCorrelatedUpdates * (kVelocitySigma_mps * kVelocitySigma_mps + mean.variance / kIndependentCells));
   const Eigen::Matrix4d S = covariance_ + R, K = covariance_ * S.inverse(),
                         I_K = Eigen::Matrix4d::Identity() - K;
   state_ += K * (z - state_);
@@ -138,6 +142,7 @@ void ClusterTrack::update(const Cluster& cells, const Eigen::Vector2d& seen_from
   for (const ClusterCell& cell : used) {
     if (cell.top_m == cell.top_m) height_m_ = std::max<double>(height_m_.value_or(0.0), cell.top_m);
   }
+  cells_ = cells.size();
   last_seen_ = stamp_;
   detectability_ = 1.0;
   recent_.push_back(true);
@@ -198,7 +203,7 @@ void ClusterTrack::confirm(int hits, int of) {
 bool ClusterTrack::isStatic(double static_speed_mps) const {
   const double speed = velocity().norm();
   const double sigma = std::sqrt(std::max(covariance_(2, 2), covariance_(3, 3)));
-  return static_share_ > 0.5 || speed < static_speed_mps || speed < 2.0 * sigma;
+  return static_share_ > kStands || speed < static_speed_mps || speed < 2.0 * sigma;
 }
 
 Object ClusterTrack::report(double road_m, double static_speed_mps) const {

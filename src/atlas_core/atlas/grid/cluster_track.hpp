@@ -16,7 +16,8 @@ namespace atlas {
 
 class ClusterTrack {
  public:
-  ClusterTrack(std::uint32_t id, Stamp stamp, const Cluster& cells, double cell_m);
+  ClusterTrack(std::uint32_t id, Stamp stamp, const Cluster& cells, const Eigen::Vector2d& seen_from_map,
+               double cell_m);
 
   void predict(Stamp stamp, double acceleration_mps2);
   /// Cells of this object at the time predicted to.
@@ -33,6 +34,8 @@ class ClusterTrack {
   [[nodiscard]] GroundBox box() const;
   /// The box with three standard deviations of the position and `margin_m` more.
   [[nodiscard]] GroundBox region(double margin_m) const;
+  /// That it was last seen with.
+  [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] bool confirmed() const { return confirmed_; }
   void confirm(int hits, int of);
   [[nodiscard]] double unseenFor_s() const { return toSeconds(stamp_ - last_seen_); }
@@ -41,7 +44,7 @@ class ClusterTrack {
   [[nodiscard]] Object report(double road_m, double static_speed_mps) const;
 
  private:
-  void turnBox(const Cluster& cells, double cell_m);
+  void turnBox(const Cluster& cells, const Eigen::Vector2d& seen_from_map, double cell_m);
   [[nodiscard]] bool headingKnown() const;
 
   std::uint32_t id_ = 0;
@@ -52,6 +55,7 @@ class ClusterTrack {
   bool by_heading_ = false;         ///< the box lies along the velocity
   std::optional<double> height_m_;  ///< above the road
   double static_share_ = 0.5;
+  std::size_t cells_ = 0;
   double detectability_ = 1.0;
   std::deque<bool> recent_;  ///< observed or not, newest last
   bool confirmed_ = false;

@@ -13,7 +13,9 @@ namespace atlas {
 namespace {
 
 constexpr double kCoreMargin_m = 0.25;  ///< around a predicted box: a cell and its noise
-constexpr double kAlike_sq = 9.0;       ///< Mahalanobis distance of velocities that may be the same
+constexpr double kShareOfCluster = 0.25, kShareOfTrack = 0.5;  ///< see claims()
+constexpr double kStranger_sq = 2.25;  ///< m^2/s^2: clusters that differ by more are not parts of one object
+constexpr double kAlike_sq = 9.0;      ///< Mahalanobis distance of velocities that may be the same
 
 void need(bool condition, const std::string& what, double value) {
   if (!condition) throw std::invalid_argument("grid objects: " + what + ", got " + std::to_string(value));
@@ -36,9 +38,9 @@ ClusterMean meanOf(const Cluster& cluster) {
   return mean;
 }
 
-bool touches(const Cluster& cluster, const GroundBox& box) {
-  return std::any_of(cluster.begin(), cluster.end(),
-                     [&](const ClusterCell& cell) { return contains(box, cell.position); });
+std::size_t cellsIn(const Cluster& cluster, const GroundBox& box) {
+  return static_cast<std::size_t>(std::count_if(
+      cluster.begin(), cluster.end(), [&](const ClusterCell& cell) { return contains(box, cell.position); }));
 }
 
 }  // namespace
@@ -81,8 +83,8 @@ bool ClusterTracker::alike(const Cluster& cluster, const ClusterTrack& track) co
          std::max(params_.velocity_gate_mps * params_.velocity_gate_mps, kAlike_sq * variance);
 }
 
-/// Tracks that claim each cluster: those whose predicted box it touches, and of the tracks that touch none in
-/// that way, those whose region it touches.
+/// Tracks that claim each cluster: those whose predicted box holds a good part of it or most of the cells
+/// that they had. A track that has no such cluster claims the one that fills most of its region.
 std::vector<std::vector<std::size_t>> ClusterTracker::claims(const std::vector<Cluster>& clusters) const {
   std::vector<std::vector<std::size_t>> claimed(clusters.size());
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
@@ -92,16 +94,41 @@ std::vector<std::vector<std::size_t>> ClusterTracker::claims(const std::vector<C
     core.width += 2.0 * kCoreMargin_m;
     const GroundBox region = track.region(params_.region_margin_m);
     bool any = false;
-    for (const GroundBox& box : {core, region}) {
-      for (std::size_t c = 0; c < clusters.size() && (!any || &box != &region); ++c) {
-        if (!touches(clusters[c], box) || !alike(clusters[c], track)) continue;
+    std::size_t fallback = clusters.size(), most = 0;
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      const std::size_t in_region = cellsIn(clusters[c], region);
+      if (in_region == 0 || !alike(clusters[c], track)) continue;
+      const auto in_core = static_cast<double>(cellsIn(clusters[c], core));
+      if (in_core >= kShareOfCluster * static_cast<double>(clusters[c].size()) ||
+          in_core >= kShareOfTrack * static_cast<double>(track.cells())) {
         claimed[c].push_back(t);
         any = true;
+      } else if (in_region > most) {
+        most = in_region;
+        fallback = c;
       }
-      if (any) break;
     }
+    if (!any && fallback < clusters.size()) claimed[fallback].push_back(t);
   }
+  leaveStrangers(clusters, claimed);
   return claimed;
+}
+
+/// Of the clusters that one track alone claims, those that move otherwise than the largest are none of its.
+void ClusterTracker::leaveStrangers(const std::vector<Cluster>& clusters,
+                                    std::vector<std::vector<std::size_t>>& claimed) const {
+  std::vector<std::size_t> largest(tracks_.size(), clusters.size());
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    if (claimed[c].size() != 1) continue;
+    std::size_t& best = largest[claimed[c].front()];
+    if (best == clusters.size() || clusters[c].size() > clusters[best].size()) best = c;
+  }
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    if (claimed[c].size() != 1 || largest[claimed[c].front()] == c) continue;
+    const ClusterMean a = meanOf(clusters[c]), b = meanOf(clusters[largest[claimed[c].front()]]);
+    const double difference_sq = (a.velocity - b.velocity).squaredNorm();
+    if (difference_sq > std::max(kStranger_sq, a.variance + b.variance)) claimed[c].clear();
+  }
 }
 
 /// Each track gets the cells nearest to it; of a wall only those in its own region.

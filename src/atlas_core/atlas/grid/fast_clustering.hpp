@@ -63,6 +63,8 @@ class ClusterTracker {
   using Pair = std::pair<std::size_t, std::size_t>;  ///< of tracks, the older one first
   [[nodiscard]] bool alike(const Cluster& cluster, const ClusterTrack& track) const;
   [[nodiscard]] std::vector<std::vector<std::size_t>> claims(const std::vector<Cluster>& clusters) const;
+  void leaveStrangers(const std::vector<Cluster>& clusters,
+                      std::vector<std::vector<std::size_t>>& claimed) const;
   void shareAmong(const Cluster& cluster, const std::vector<std::size_t>& claimants, bool wall,
                   std::vector<Cluster>& observed) const;
   void addPartsOfWholes(const GridView& view, std::vector<Pair>& ambiguous) const;

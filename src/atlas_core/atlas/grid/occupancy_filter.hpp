@@ -22,10 +22,10 @@ struct FilterParams {
   FilterMode mode = FilterMode::kLattice;
   // lattice
   /// Positive speeds of one axis, ascending; both axes have these, their negatives and 0.
-  std::vector<double> levels_mps = {1.5, 4.0, 8.0, 14.0};
+  std::vector<double> levels_mps = {1.5, 3.5, 6.0, 9.5, 14.0};
   double static_share = 0.5;        ///< of a thing that shows up where nothing was known: it stands
-  double static_share_free = 0.05;  ///< where it was free: something came here
-  double birth_per_s = 0.4;         ///< an empty cell becomes occupied
+  double static_share_free = 0.01;  ///< where it was free: something came here
+  double birth_per_s = 3.0;         ///< an empty cell becomes occupied
   double vanish_per_s = 0.2;        ///< an occupied cell becomes empty, beside what moves away
   double change_per_s = 0.2;        ///< something takes up any other velocity
   double accelerate_per_s = 0.4;    ///< something moving takes up the next velocity, each of the four ways

@@ -136,7 +136,7 @@ void ClusterTracker::begin(const std::vector<const Cluster*>& unclaimed, const G
     const auto seen =
         std::count_if(cluster->begin(), cluster->end(), [](const ClusterCell& c) { return c.seen; });
     if (seen < params_.min_cells) continue;
-    tracks_.emplace_back(next_id_++, view.stamp, *cluster, view.geometry.cell_m);
+    tracks_.emplace_back(next_id_++, view.stamp, *cluster, view.seen_from_map, view.geometry.cell_m);
     tracks_.back().confirm(params_.confirm_hits, params_.confirm_of);
     for (const ClusterCell& cell : *cluster)
       cluster_of_cell_[cell.index] = -static_cast<std::int32_t>(tracks_.back().id());
