@@ -130,6 +130,9 @@ void UDisparity::prepareRows(const RoadProfile& road) {
   const auto bin_from = [&](double disparity_px) {  // first bin whose middle is not less
     return static_cast<std::uint16_t>(std::clamp(std::ceil(disparity_px / bin_px - 0.5), 0.0, bins * 1.0));
   };
+  const auto bin_up_to = [&](double disparity_px) {  // behind the last one whose middle is not greater
+    return static_cast<std::uint16_t>(std::clamp(std::floor(disparity_px / bin_px + 0.5), 0.0, bins * 1.0));
+  };
   first_.assign(static_cast<std::size_t>(rows), 0);
   end_.assign(static_cast<std::size_t>(rows), static_cast<std::uint16_t>(bins));
   possible_.assign(static_cast<std::size_t>(bins), 0);
@@ -137,7 +140,7 @@ void UDisparity::prepareRows(const RoadProfile& road) {
     const double below_horizon = static_cast<double>(v) - road.horizon_row;
     if (below_horizon >= 0.0) {
       first_[v] = bin_from(below_horizon / foot);
-      if (top > 0.0) end_[v] = static_cast<std::uint16_t>(std::min(bins, bin_from(below_horizon / top) + 1));
+      if (top > 0.0) end_[v] = bin_up_to(below_horizon / top);
     } else {
       first_[v] = top < 0.0 ? bin_from(below_horizon / top) : static_cast<std::uint16_t>(bins);
     }
@@ -168,18 +171,20 @@ void UDisparity::count(const DisparityImage& image) {
   const unsigned bins = static_cast<unsigned>(grid_.bins),
                  bins_per_px = static_cast<unsigned>(grid_.bins_per_px);
   for (auto* counts : {&obstacle_, &way_, &beyond_}) counts->assign(bins * columns + 2 * margin, 0);
-  constexpr std::uint8_t kBeyond = 0, kObstacle = static_cast<std::uint8_t>(SurfaceLabel::kObstacle);
+  constexpr std::uint8_t kBeyond = 0, kRoad = static_cast<std::uint8_t>(SurfaceLabel::kRoad);
   std::uint16_t* const planes[] = {beyond_.data() + margin, obstacle_.data() + margin, way_.data() + margin};
   for (int v = 0; v < rig_.height_px; ++v) {
     const std::uint16_t* disparity = image.disparity.ptr<std::uint16_t>(v);
     const std::uint8_t* surface = image.surface.ptr<std::uint8_t>(v);
     const unsigned first = first_[static_cast<std::size_t>(v)], end = end_[static_cast<std::size_t>(v)];
+    // road that is measured a little under the road counts at the road
+    const std::uint8_t under = v > image.road->horizon_row ? kRoad : kBeyond;
     for (std::size_t u = 0; u < columns; ++u) {
       if (disparity[u] == 0) continue;
       const unsigned measured = disparity[u] * bins_per_px / kDisparityScale;
       const unsigned bin = std::max(measured, first);
       if (bin >= end) continue;
-      const std::uint8_t kind = measured < first && surface[u] == kObstacle ? kBeyond : surface[u];
+      const std::uint8_t kind = measured < first && surface[u] != under ? kBeyond : surface[u];
       ++planes[kind][bin * columns + u];
       if (end < bins) --planes[kBeyond][end * columns + u];  // modulo 2^16, as the sum of all is taken
     }
