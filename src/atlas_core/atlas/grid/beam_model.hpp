@@ -12,6 +12,7 @@
 // hit counts before a beam that passes: between two beams there is no hole at any range.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "atlas/grid/grid_geometry.hpp"
@@ -48,6 +49,16 @@ struct LidarEvidence {
   std::vector<float> occupied;  ///< P(occupied | its layers); 0.5 = nothing known
   std::vector<float> top_m;     ///< highest return in the cell above the road, NaN without one
 };
+
+/// Azimuths of the polar cells.
+namespace polar {
+constexpr int kAzimuths = 1440;
+constexpr float kAzimuthsPerRad = static_cast<float>(kAzimuths / (2.0 * M_PI));
+/// The same azimuth within [0, kAzimuths), of one that is at most a turn beyond.
+constexpr int wrapped(int azimuth) {
+  return azimuth < 0 ? azimuth + kAzimuths : azimuth >= kAzimuths ? azimuth - kAzimuths : azimuth;
+}
+}  // namespace polar
 
 /// Keeps its buffers between sweeps. The evidence is added up in polar cells around the lidar (0.25 deg by
 /// half a cell), as the logarithm of the odds, and each cell of the grid gathers those that it covers.

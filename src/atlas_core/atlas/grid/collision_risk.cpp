@@ -55,8 +55,8 @@ Rectangle egoAfter(const EgoMotion& ego, double t, const RiskParams& p) {
           forward, 0.5 * (p.front_m + p.rear_m), p.half_width_m};
 }
 
-/// P(first contact in each bin) with one object: its state's uncertainty is one of the object, not of each
-/// moment, so each of its possible courses has its own first contact.
+/// P(first contact in each bin) with one object that moves: its state's uncertainty is one of the object, not
+/// of each moment, so each of its possible courses has its own first contact.
 std::vector<double> contactsWith(const Object& object, const std::vector<Rectangle>& ego,
                                  const RiskParams& p) {
   std::vector<double> contact(ego.size(), 0.0);
@@ -78,8 +78,7 @@ std::vector<double> contactsWith(const Object& object, const std::vector<Rectang
       const auto drift = [&](int axis) {  // of its speed, and of what it may do against it
         return node[2 + axis] * std::hypot(sigma[2 + axis] * t, 0.5 * p.acceleration_mps2 * t * t);
       };
-      Eigen::Vector2d moved = Eigen::Vector2d::Zero();
-      if (!object.is_static) moved = object.velocity_mps.head<2>() * t + Eigen::Vector2d(drift(0), drift(1));
+      const Eigen::Vector2d moved = object.velocity_mps.head<2>() * t + Eigen::Vector2d(drift(0), drift(1));
       const Rectangle there{at + moved, along, 0.5 * object.size.x(), 0.5 * object.size.y()};
       if (!overlap(there, ego[bin])) continue;
       contact[bin] += weight * object.existence;
@@ -92,6 +91,8 @@ std::vector<double> contactsWith(const Object& object, const std::vector<Rectang
 /// What the grid itself says of the way.
 struct CellsOnTheWay {
   std::vector<double> survival;  ///< P(no contact up to the end of each bin)
+  std::map<std::int32_t, double>
+      things;  ///< P(it is there) of what lies on the way, by number of its cluster
   double unknown_share = 0;
 };
 
@@ -112,17 +113,17 @@ void forCellsUnder(const Rectangle& r, const GridGeometry& g, Visit&& visit) {
 CellsOnTheWay cellsOnTheWay(const std::vector<Rectangle>& ego, const Objects& objects,
                             const GridGeometry& geometry, const CellEstimates& cells,
                             const std::vector<std::int32_t>& cluster_of_cell, const RiskParams& p) {
-  const auto isOfObject = [&](std::size_t i) {
+  const auto moves = [&](std::size_t i) {
     return cluster_of_cell[i] < 0 &&
            std::any_of(objects.objects.begin(), objects.objects.end(), [&](const Object& o) {
-             return static_cast<std::int32_t>(o.id) == -cluster_of_cell[i];
+             return !o.is_static && static_cast<std::int32_t>(o.id) == -cluster_of_cell[i];
            });
   };
   std::set<std::pair<int, int>> passed;
   forCellsUnder(ego.front(), geometry, [&](int column, int row) { passed.emplace(row, column); });
   const std::size_t own = passed.size();  // where the vehicle is now there is nothing else
-  std::map<std::int32_t, double> most;    // the cells of one thing are hit together: the surest one counts
   CellsOnTheWay result;
+  std::map<std::int32_t, double>& most = result.things;  // its cells are hit together: the surest one counts
   std::size_t unknown = 0;
   for (const Rectangle& place : ego) {
     forCellsUnder(place, geometry, [&](int column, int row) {
@@ -131,7 +132,7 @@ CellsOnTheWay cellsOnTheWay(const std::vector<Rectangle>& ego, const Objects& ob
       const std::size_t i = inside ? geometry.indexOf(column, row) : 0;
       unknown += !inside || cells.unknown[i] > 0.5F ? 1 : 0;
       const double probability = inside ? cells.occupied[i] - 0.5 * cells.unknown[i] : 0.0;
-      if (probability < p.min_cell_probability || isOfObject(i)) return;
+      if (probability < p.min_cell_probability || moves(i)) return;
       double& thing = most[cluster_of_cell[i]];
       thing = std::max(thing, probability);
     });
@@ -170,7 +171,14 @@ CollisionRisk collisionRisk(const EgoMotion& ego, const Objects& objects, const 
   CellsOnTheWay way = cellsOnTheWay(places, objects, geometry, cells, cluster_of_cell, params);
   risk.unknown_share = way.unknown_share;
   double likeliest = 0.0;
+  for (const auto& [number, probability] : way.things) {
+    if (number >= 0 || probability <= likeliest) continue;
+    likeliest = probability;
+    risk.object = static_cast<std::uint32_t>(-number);
+  }
   for (const Object& object : objects.objects) {
+    if (object.is_static)
+      continue;  // its cells were counted: the box of a wall round a corner covers the road
     const std::vector<double> contact = contactsWith(object, places, params);
     double hit = 0.0;
     for (std::size_t bin = 0; bin < bins; ++bin) {

@@ -40,8 +40,8 @@ struct CollisionRisk {
   std::optional<std::uint32_t> object;  ///< the one most likely hit; none when it is no object
 };
 
-/// Objects by their boxes and covariances, standing cells that belong to none of them by their probability.
-/// `cluster_of_cell`: 0 = of none, else cells of the same number are one thing.
+/// What moves by its box and covariance, what stands by the probability of its cells: a box would fill what
+/// lies between its walls. `cluster_of_cell`: 0 = of none, else cells of the same number are one thing.
 [[nodiscard]] CollisionRisk collisionRisk(const EgoMotion& ego, const Objects& objects,
                                           const GridGeometry& geometry, const CellEstimates& cells,
                                           const std::vector<std::int32_t>& cluster_of_cell,
