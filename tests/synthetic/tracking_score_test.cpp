@@ -61,6 +61,23 @@ TEST(TrackingScore, IdentityByHand) {
   EXPECT_NEAR(score.idf1, 0.75, 1e-12);
 }
 
+TEST(TrackingScore, PairsAreKeptWhileTheyAreValid) {
+  // two tracks of one object, in turn the nearer one; the first is too far off in the last frame
+  const auto frameWith = [](double a, double b) {
+    ScoredFrame frame;
+    frame.truths.push_back({1, false});
+    frame.tracks = {{10, 0.0, false}, {11, 0.0, false}};
+    frame.similarity = {{a, b}};
+    return frame;
+  };
+  const ScoredSequences sequences = {
+      {frameWith(0.9, 0.7), frameWith(0.7, 0.9), frameWith(0.9, 0.7), frameWith(0.4, 0.9)}};
+  EXPECT_EQ(clearMot(sequences, 0.5).switches, 3U);
+  const ClearScore kept = clearMot(sequences, 0.5, std::nullopt, Pairing::kKeep);
+  EXPECT_EQ(kept.switches, 1U);
+  EXPECT_EQ(kept.false_positives, 4U);  // the other track is one too many all the same
+}
+
 TEST(TrackingScore, HotaByHand) {
   // similarity 0.8 passes 16 of 19 alphas; at each DetA = 1, AssA = (1 * 1/4 + 3 * 3/4) / 4
   const ScoredSequences sequences = {{frameOf({10}), frameOf({11}), frameOf({11}), frameOf({11})}};

@@ -93,7 +93,8 @@ struct Result {
 class Instant {
  public:
   Instant(const std::vector<RunObject>& run, const std::map<int, TrueObject>& truth,
-          const std::vector<OwnedPoint>& points, const Eigen::Vector2d& vehicle)
+          const std::vector<OwnedPoint>& points, const Eigen::Vector2d& vehicle,
+          const std::map<int, int>& kept)
       : run_(run), points_(points), vehicle_(vehicle) {
     std::map<int, int> returns;
     for (const OwnedPoint& point : points) ++returns[point.owner];
@@ -106,20 +107,24 @@ class Instant {
     frame.similarity.resize(frame.truths.size());
     for (const RunObject& object : run) {
       const bool far = (object.box.center - vehicle).norm() > kRange_m;
-      frame.tracks.push_back({object.id, 0.0, far || (object.class_id < 0 && isNotJudged(object))});
+      const Ground ground = object.class_id < 0 ? groundOf(object) : Ground::kObject;
+      frame.tracks.push_back({object.id, 0.0, far || ground != Ground::kObject || isOnIgnored(object)});
       for (std::size_t i = 0; i < truths_.size(); ++i) {
+        // a tree above a car is no answer to the car
         const double apart = (truths_[i]->box.center - object.box.center).norm();
-        frame.similarity[i].push_back(std::max(0.0, 1.0 - apart / kFarApart_m));
+        const bool may_be = ground != Ground::kStructure;
+        frame.similarity[i].push_back(may_be ? std::max(0.0, 1.0 - apart / kFarApart_m) : 0.0);
       }
     }
-    auto gain = frame.similarity;
-    for (auto& row : gain) {
-      for (double& s : row) s = s >= kSame ? 1000.0 + s : 0.0;
-    }
-    pair = bestPairs(gain);
+    pair = pairsOf(frame, kSame, kept);
   }
-  /// On structures, or hidden: the run may well know more than the newest scans show.
-  [[nodiscard]] bool isNotJudged(const RunObject& object) const {
+  /// What the newest scans show where the run says that something is.
+  enum class Ground {
+    kObject,     ///< what is judged
+    kStructure,  ///< a house, a tree, a pole
+    kHidden      ///< nothing, with something nearer before it: the run may well know more than these scans
+  };
+  [[nodiscard]] Ground groundOf(const RunObject& object) const {
     int structure = 0, others = 0, before = 0;
     const double reach = 0.5 * std::hypot(object.box.length, object.box.width) + kMargin_m;
     const Eigen::Vector2d sight = object.box.center - vehicle_;
@@ -137,7 +142,15 @@ class Instant {
         continue;
       ++(point.owner == kOwnerStructure ? structure : others);
     }
-    return others == 0 ? structure > 0 || before >= kHiding : structure >= others;
+    if (structure > 0 && structure >= others) return Ground::kStructure;
+    return others == 0 && before >= kHiding ? Ground::kHidden : Ground::kObject;
+  }
+  /// On an object that need not be known: the part of it that is seen may be far from its middle.
+  [[nodiscard]] bool isOnIgnored(const RunObject& object) const {
+    for (std::size_t i = 0; i < truths_.size(); ++i) {
+      if (frame.truths[i].ignored && truths_[i]->box.holds(object.box.center, kMargin_m)) return true;
+    }
+    return false;
   }
   void judge(Stamp stamp, double period_s, const std::map<int, Stamp>& seen, Result& result) const {
     for (std::size_t i = 0; i < truths_.size(); ++i) {
@@ -179,7 +192,7 @@ class Instant {
 
 void report(Result& result, std::uint64_t instants, Evaluation& evaluation) {
   const std::string group = "objects";
-  const ClearScore clear = clearMot(result.frames, kSame);
+  const ClearScore clear = clearMot(result.frames, kSame, std::nullopt, Pairing::kKeep);
   const ScoredSequences judged = withoutIgnored(result.frames, kSame);
   const HotaScore hota = hotaScore(judged);
   evaluation.addCount(group, "instants", instants);
@@ -219,6 +232,7 @@ void evaluateObjects(const RunFolders& folders, const Pose& T_truth_run, Evaluat
   Result result;
   std::uint64_t instants = 0;
   Stamp last = 0;
+  std::map<int, int> kept;
   for (const Stamp stamp : truth.stamps()) {
     if (stamp < objects.begin()->first || stamp > objects.rbegin()->first)
       continue;  // no pose yet, or no more
@@ -228,7 +242,8 @@ void evaluateObjects(const RunFolders& folders, const Pose& T_truth_run, Evaluat
     const auto found = objects.find(stamp);
     const std::vector<RunObject> none;
     const std::map<int, TrueObject> at = truth.objectsAt(stamp);
-    const Instant instant(found == objects.end() ? none : found->second, at, *points, *vehicle);
+    const Instant instant(found == objects.end() ? none : found->second, at, *points, *vehicle, kept);
+    kept = idsOf(instant.frame, instant.pair);
     instant.judge(stamp, last == 0 ? 0.0 : toSeconds(stamp - last), seen, result);
     result.frames.front().push_back(instant.frame);
     last = stamp;

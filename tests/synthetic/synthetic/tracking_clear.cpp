@@ -12,17 +12,11 @@ namespace {
 
 constexpr int kRecalls = 40;
 
-void judgeFrame(const ScoredFrame& frame, double threshold, const std::set<int>& missing,
+constexpr double kKept = 1e6, kPair = 1000.0;  ///< gains: kept pairs first, then as many as possible
+
+void judgeFrame(const ScoredFrame& frame, const std::vector<int>& pair, const std::set<int>& missing,
                 const std::map<int, double>& means, std::map<int, std::vector<int>>& found,
                 std::map<int, std::vector<char>>& ignored, ClearScore& score) {
-  std::vector<std::vector<double>> gain(frame.truths.size(), std::vector<double>(frame.tracks.size(), 0.0));
-  for (std::size_t i = 0; i < frame.truths.size(); ++i) {
-    for (std::size_t j = 0; j < frame.tracks.size(); ++j) {
-      const bool usable = frame.similarity[i][j] >= threshold && missing.count(frame.tracks[j].id) == 0;
-      gain[i][j] = usable ? 1000.0 + frame.similarity[i][j] : 0.0;  // as many pairs as possible first
-    }
-  }
-  const std::vector<int> pair = bestPairs(gain);
   std::vector<char> used(frame.tracks.size(), 0);
   for (std::size_t i = 0; i < frame.truths.size(); ++i) {
     const ScoredTruth& truth = frame.truths[i];
@@ -122,7 +116,30 @@ double ClearScore::motp() const {
   return true_positives == 0 ? 0.0 : similarity_sum / static_cast<double>(true_positives);
 }
 
-ClearScore clearMot(const ScoredSequences& sequences, double threshold, std::optional<double> least_score) {
+std::vector<int> pairsOf(const ScoredFrame& frame, double threshold, const std::map<int, int>& kept) {
+  std::vector<std::vector<double>> gain(frame.truths.size(), std::vector<double>(frame.tracks.size(), 0.0));
+  for (std::size_t i = 0; i < frame.truths.size(); ++i) {
+    const auto before = kept.find(frame.truths[i].id);
+    for (std::size_t j = 0; j < frame.tracks.size(); ++j) {
+      const double s = frame.similarity[i][j];
+      if (s < threshold) continue;
+      const bool keep = before != kept.end() && before->second == frame.tracks[j].id;
+      gain[i][j] = (keep ? kKept : kPair) + s;
+    }
+  }
+  return bestPairs(gain);
+}
+
+std::map<int, int> idsOf(const ScoredFrame& frame, const std::vector<int>& pairs) {
+  std::map<int, int> ids;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i] >= 0) ids[frame.truths[i].id] = frame.tracks[static_cast<std::size_t>(pairs[i])].id;
+  }
+  return ids;
+}
+
+ClearScore clearMot(const ScoredSequences& sequences, double threshold, std::optional<double> least_score,
+                    Pairing pairing) {
   ClearScore score;
   for (const auto& frames : sequences) {
     const std::map<int, double> means = meanScores(frames);
@@ -132,8 +149,18 @@ ClearScore clearMot(const ScoredSequences& sequences, double threshold, std::opt
     }
     std::map<int, std::vector<int>> found;
     std::map<int, std::vector<char>> ignored;
-    for (const ScoredFrame& frame : frames)
-      judgeFrame(frame, threshold, missing, means, found, ignored, score);
+    std::map<int, int> kept;
+    for (const ScoredFrame& frame : frames) {
+      ScoredFrame usable = frame;
+      for (auto& row : usable.similarity) {
+        for (std::size_t j = 0; j < row.size(); ++j) {
+          if (missing.count(frame.tracks[j].id) != 0) row[j] = -1.0;
+        }
+      }
+      const std::vector<int> pair = pairsOf(usable, threshold, kept);
+      if (pairing == Pairing::kKeep) kept = idsOf(frame, pair);
+      judgeFrame(frame, pair, missing, means, found, ignored, score);
+    }
     for (const auto& [id, g] : found) judgeIdentity(g, ignored.at(id), score);
   }
   return score;

@@ -163,11 +163,7 @@ ScoredSequences withoutIgnored(const ScoredSequences& sequences, double threshol
     result.emplace_back();
     const std::map<int, double> means = meanScores(frames);
     for (const ScoredFrame& frame : frames) {
-      std::vector<std::vector<double>> gain = frame.similarity;
-      for (auto& row : gain) {
-        for (double& s : row) s = s >= threshold ? 1000.0 + s : 0.0;
-      }
-      const std::vector<int> pair = bestPairs(gain);
+      const std::vector<int> pair = pairsOf(frame, threshold);
       std::vector<char> keep(frame.tracks.size(), 1);
       for (std::size_t j = 0; j < frame.tracks.size(); ++j) keep[j] = frame.tracks[j].ignored ? 0 : 1;
       for (std::size_t i = 0; i < pair.size(); ++i) {

@@ -40,11 +40,17 @@ struct ClearScore {
   [[nodiscard]] double mota() const;
   [[nodiscard]] double motp() const;
 };
+/// Which pairs a frame has, where several are possible.
+enum class Pairing {
+  kEachFrame,  ///< the most similar ones, whatever was before: as the development kit of KITTI and AB3DMOT
+  kKeep  ///< those of the frame before as long as they are valid: Bernardin and Stiefelhagen, section 2.1.3
+};
 /// Pairs of similarity >= threshold, the sum of the similarities as large as possible; tracks whose mean
 /// score is below `least_score` do not exist. Switches and fragments as AB3DMOT's evaluation counts them:
 /// against the last frame in which the object was found, and not where it is ignored.
 [[nodiscard]] ClearScore clearMot(const ScoredSequences& sequences, double threshold,
-                                  std::optional<double> least_score = std::nullopt);
+                                  std::optional<double> least_score = std::nullopt,
+                                  Pairing pairing = Pairing::kEachFrame);
 
 struct RecallScore {
   double samota = 0.0, amota = 0.0, amotp = 0.0;
@@ -67,6 +73,12 @@ struct HotaScore {
 
 /// Column of each row, -1 = none, so that the sum of `gain` is largest; only gains > 0 are taken.
 [[nodiscard]] std::vector<int> bestPairs(const std::vector<std::vector<double>>& gain);
+/// Track of each truth of a frame, -1 = none: those of `kept` (track by truth, ids) that are valid, then as
+/// many as possible, the similar ones.
+[[nodiscard]] std::vector<int> pairsOf(const ScoredFrame& frame, double threshold,
+                                       const std::map<int, int>& kept = {});
+/// The pairs by id, for the next frame's `kept`.
+[[nodiscard]] std::map<int, int> idsOf(const ScoredFrame& frame, const std::vector<int>& pairs);
 /// Ignored truths with their tracks, ignored tracks without truths, and tracks whose mean score is below
 /// `least_score`, taken out.
 [[nodiscard]] ScoredSequences withoutIgnored(const ScoredSequences& sequences, double threshold,
