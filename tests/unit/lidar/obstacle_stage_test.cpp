@@ -141,8 +141,7 @@ Scene frontAndCabin(double bonnet_m, double aside_m = 0.0, double cabin_from_m =
   Scene scene;
   scene.road();
   for (double y = -0.85; y <= 0.86; y += 0.1) {
-    scene.add(24.0, y, 0.35);
-    scene.add(24.0, y, 0.7);
+    for (const double z : {0.35, 0.7}) scene.add(24.0, y, z);
     for (double x = 24.0 + bonnet_m; x <= 24.0 + bonnet_m + 2.6; x += 0.3)
       scene.add(x, y + aside_m, cabin_from_m + 0.15 * (x - 24.0 - bonnet_m));
   }
@@ -151,14 +150,12 @@ Scene frontAndCabin(double bonnet_m, double aside_m = 0.0, double cabin_from_m =
 
 TEST(FindObstacles, FrontAndCabinAreOneCarWhereTheBonnetIsNotSeen) {
   Counters counters;
-  // at 24 m a gap of 0.78 m is bridged
-  const Obstacles car = found(frontAndCabin(1.3), counters);
+  const Obstacles car = found(frontAndCabin(1.3), counters);  // clusters bridge 0.78 m at 24 m
   ASSERT_EQ(car.obstacles.size(), 1U);
   EXPECT_NEAR(std::max(car.obstacles[0].size.x(), car.obstacles[0].size.y()), 3.9, 0.2);
   EXPECT_EQ(found(frontAndCabin(2.0), counters).obstacles.size(), 2U) << "no bonnet is so long";
   EXPECT_EQ(found(frontAndCabin(1.3, 0.9), counters).obstacles.size(), 2U) << "not in line";
-  EXPECT_EQ(found(frontAndCabin(1.3, 0.0, 0.3), counters).obstacles.size(), 2U)
-      << "what begins as low is another one's front or side";
+  EXPECT_EQ(found(frontAndCabin(1.3, 0.0, 0.3), counters).obstacles.size(), 2U) << "no cabin begins so low";
 }
 
 TEST(FindObstacles, ARearBehindACarIsNotItsFront) {
@@ -166,8 +163,7 @@ TEST(FindObstacles, ARearBehindACarIsNotItsFront) {
   scene.road();
   for (double y = -0.85; y <= 0.86; y += 0.1) {
     for (double x = 20.0; x <= 22.6; x += 0.3) scene.add(x, y, 0.9 + 0.1 * (x - 20.0));  // a cabin
-    scene.add(24.0, y, 0.35);  // of the next car, farther away
-    scene.add(24.0, y, 0.7);
+    for (const double z : {0.35, 0.7}) scene.add(24.0, y, z);  // of the next car, farther away
   }
   Counters counters;
   EXPECT_EQ(found(scene, counters).obstacles.size(), 2U);
