@@ -9,6 +9,7 @@ namespace atlas {
 namespace {
 
 constexpr double kPositionSigma_m = 0.2;    ///< of a side, from cells of 0.2 m and beams that miss corners
+constexpr double kHiddenSigma_m = 1.5;      ///< of the middle of a part whose ends are hidden
 constexpr double kVelocitySigma_mps = 0.8;  ///< least, of the mean of cells: they err together
 constexpr double kIndependentCells = 4.0;   ///< of a cluster, at most
 constexpr double kFirstSpeedSigma_mps = 5.0;
@@ -40,12 +41,27 @@ Mean meanOf(const Cluster& cells) {
   return mean;
 }
 
-/// Middle along one axis: the side towards the sensor is seen, the other one may not be.
-double middleAlong(double low, double high, double sensor, double size) {
-  if (high - low >= size) return 0.5 * (low + high);
-  if (sensor < low) return low + 0.5 * size;
-  if (sensor > high) return high - 0.5 * size;
-  return 0.5 * (low + high);
+/// Middle along one axis of the seen part [low, high], and how far it can be believed. A side is an end of
+/// the object where the ground beyond it is seen free; where it is hidden the object goes on.
+struct Middle {
+  double at = 0, sigma_m = kPositionSigma_m;
+};
+Middle middleAlong(double low, double high, bool low_ends, bool high_ends, double size) {
+  if (low_ends == high_ends) return {0.5 * (low + high), low_ends ? kPositionSigma_m : kHiddenSigma_m};
+  const double whole = std::max(size, high - low);
+  return {low_ends ? low + 0.5 * whole : high - 0.5 * whole, kPositionSigma_m};
+}
+
+/// Whether the ground beyond a side of a box is free: at three places along the side.
+bool endsAt(const GroundBox& box, const Eigen::Vector2d& outwards, double half_out, double half_side,
+            double cell_m, const std::function<bool(const Eigen::Vector2d&)>& seen_free) {
+  const Eigen::Vector2d side(-outwards.y(), outwards.x());
+  int free = 0;
+  for (const double along : {-0.6, 0.0, 0.6}) {
+    const Eigen::Vector2d near = box.center + (half_out + cell_m) * outwards + along * half_side * side;
+    free += seen_free(near) || seen_free(near + cell_m * outwards) ? 1 : 0;
+  }
+  return free >= 2;
 }
 
 }  // namespace
@@ -113,7 +129,8 @@ void ClusterTrack::turnBox(const Cluster& cells, const Eigen::Vector2d& seen_fro
   width_ += kSmooth * (seen.width - width_);
 }
 
-void ClusterTrack::update(const Cluster& cells, const Eigen::Vector2d& seen_from_map, double cell_m) {
+void ClusterTrack::update(const Cluster& cells, const Eigen::Vector2d& seen_from_map, double cell_m,
+                          const std::function<bool(const Eigen::Vector2d&)>& seen_free) {
   Cluster seen;
   for (const ClusterCell& cell : cells) {
     if (cell.seen) seen.push_back(cell);
@@ -123,15 +140,18 @@ void ClusterTrack::update(const Cluster& cells, const Eigen::Vector2d& seen_from
   turnBox(used, seen_from_map, cell_m);
   const GroundBox box = boxAlong(used, yaw_rad_, cell_m);
   const Eigen::Vector2d along(std::cos(yaw_rad_), std::sin(yaw_rad_)), across(-along.y(), along.x());
-  const auto middle = [&](const Eigen::Vector2d& axis, double half, double size) {
+  const auto middle = [&](const Eigen::Vector2d& axis, double half, double half_side, double size) {
     const double at = box.center.dot(axis);
-    return middleAlong(at - half, at + half, seen_from_map.dot(axis), size);
+    return middleAlong(at - half, at + half, endsAt(box, -axis, half, half_side, cell_m, seen_free),
+                       endsAt(box, axis, half, half_side, cell_m, seen_free), size);
   };
+  const Middle x = middle(along, 0.5 * box.length, 0.5 * box.width, length_),
+               y = middle(across, 0.5 * box.width, 0.5 * box.length, width_);
   Eigen::Vector4d z;
-  z << middle(along, 0.5 * box.length, length_) * along + middle(across, 0.5 * box.width, width_) * across,
-      mean.velocity;
+  z << x.at * along + y.at * across, mean.velocity;
   Eigen::Matrix4d R = Eigen::Matrix4d::Zero();
-  R.diagonal().head<2>().setConstant(kPositionSigma_m * kPositionSigma_m);
+  R.topLeftCorner<2, 2>() =
+      x.sigma_m * x.sigma_m * along * along.transpose() + y.sigma_m * y.sigma_m * across * across.transpose();
   R.diagonal().tail<2>().setConstant(
       kCorrelatedUpdates * (kVelocitySigma_mps * kVelocitySigma_mps + mean.variance / kIndependentCells));
   const Eigen::Matrix4d S = covariance_ + R, K = covariance_ * S.inverse(),

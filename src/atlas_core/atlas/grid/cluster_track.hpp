@@ -6,6 +6,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <optional>
 
 #include "atlas/base/time.hpp"
@@ -20,8 +21,10 @@ class ClusterTrack {
                double cell_m);
 
   void predict(Stamp stamp, double acceleration_mps2);
-  /// Cells of this object at the time predicted to.
-  void update(const Cluster& cells, const Eigen::Vector2d& seen_from_map, double cell_m);
+  /// Cells of this object at the time predicted to; `seen_free` tells of a place whether it is seen to be
+  /// empty.
+  void update(const Cluster& cells, const Eigen::Vector2d& seen_from_map, double cell_m,
+              const std::function<bool(const Eigen::Vector2d&)>& seen_free);
   /// No cells; `detectability`: how surely its place is seen, 0 = hidden.
   void miss(double detectability);
   /// The other is the same thing: states weighted by their information, boxes together.

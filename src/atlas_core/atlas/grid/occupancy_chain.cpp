@@ -9,7 +9,8 @@
 namespace atlas {
 namespace {
 
-constexpr double kRoadTime_s = 2.0;  ///< the road's slope is what the vehicle's tilt has been over this time
+constexpr double kRoadTime_s =
+    5.0;  ///< the road's slope is the vehicle's tilt over this time: braking is none
 
 void need(bool condition, const std::string& what, double value) {
   if (!condition) throw std::invalid_argument("occupancy: " + what + ", got " + std::to_string(value));

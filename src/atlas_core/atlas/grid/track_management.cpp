@@ -119,11 +119,16 @@ void ClusterTracker::merge(std::vector<Cluster>& observed, Counters& counters) {
 }
 
 void ClusterTracker::correct(const GridView& view, const std::vector<Cluster>& observed) {
+  const auto seen_free = [&](const Eigen::Vector2d& place) {
+    const int column = view.geometry.columnOf(place.x()), row = view.geometry.rowOf(place.y());
+    return view.geometry.contains(column, row) &&
+           view.evidence[view.geometry.indexOf(column, row)] < kSeenFree;
+  };
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const bool seen = std::any_of(observed[t].begin(), observed[t].end(),
                                   [](const ClusterCell& cell) { return cell.seen; });
     if (seen) {
-      tracks_[t].update(observed[t], view.seen_from_map, view.geometry.cell_m);
+      tracks_[t].update(observed[t], view.seen_from_map, view.geometry.cell_m, seen_free);
     } else {
       tracks_[t].miss(freeShare(tracks_[t].box(), view).value_or(0.0));
     }
