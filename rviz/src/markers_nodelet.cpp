@@ -15,6 +15,7 @@
 #include "atlas_ros/param_reader.hpp"
 #include "driven_path.hpp"
 #include "markers.hpp"
+#include "object_markers.hpp"
 
 namespace atlas_rviz {
 namespace {
@@ -39,6 +40,7 @@ class MarkersNodelet : public nodelet::Nodelet {
     params.rejectUnread();
     validate(box_);
     draw<atlas_msgs::ObstacleArray>("obstacles", "markers/obstacles", obstacleMarkers);
+    for (const std::string& topic : {std::string("objects"), std::string("grid/objects")}) drawObjects(topic);
     for (const std::string& camera : cameras) {
       draw<atlas_msgs::FrustumArray>(camera + "/frustums", "markers/" + camera + "/frustums", frustumMarkers);
     }
@@ -64,6 +66,14 @@ class MarkersNodelet : public nodelet::Nodelet {
     const ros::Publisher publisher = advertise(marker_topic, false);
     listen<Message>(topic, [publisher, markers](const Message& msg) {
       publish(publisher, markers(atlas_ros::fromMsg(msg)));
+    });
+  }
+
+  void drawObjects(const std::string& topic) {
+    const ros::Publisher publisher = advertise("markers/" + topic, false);
+    listen<atlas_msgs::ObjectArray>(topic, [publisher](const atlas_msgs::ObjectArray& msg) {
+      const auto objects = atlas_ros::fromMsg(msg);
+      if (objects) publish(publisher, objectMarkers(**objects));
     });
   }
 
