@@ -58,6 +58,23 @@ TEST_F(TrackerTest, AParkedCarIsStaticWhenWeDriveBy) {
   EXPECT_NEAR(std::remainder(last.objects[0].yaw_rad, M_PI), 0.0, 0.1);
 }
 
+TEST_F(TrackerTest, ACarThatTurnsOutToBeAnotherBoxIsStillOneObject) {
+  const Eigen::Vector2d eye(0.0, 0.0);
+  for (double t = 0.0; t < 2.0;
+       t += 0.1) {  // at first only a corner, with the hedge behind it: across the car
+    const bool far = t < 0.95;
+    look(t, {far ? Vehicle{20.0, 5.0, 0.5 * M_PI, 4.0, 1.6, 1.5} : Vehicle{20.0, 4.0, 0.0, 4.4, 1.8, 1.5}},
+         eye);
+    const Objects told = tracker_.report(at(t));
+    EXPECT_LE(told.objects.size(), 1U) << "at " << t << " s";
+  }
+  const Objects last = tracker_.report(at(2.0));
+  ASSERT_EQ(last.objects.size(), 1U);
+  EXPECT_EQ(last.objects[0].id, 1U);
+  EXPECT_NEAR(std::remainder(last.objects[0].yaw_rad, M_PI), 0.0, 0.15);
+  EXPECT_NEAR(last.objects[0].position.y(), 4.0, 0.5);
+}
+
 TEST_F(TrackerTest, ACarPassingBehindABusKeepsItsId) {
   const Vehicle bus{15.0, 0.0, 0.0, 11.8, 2.5, 3.1};
   std::set<std::uint32_t> ids;

@@ -33,5 +33,17 @@ TEST(TrackHeading, AHeadingThatWasTakenTheWrongWayRoundIsTurnedByTheMotion) {
   EXPECT_NEAR(track.shape().yaw_rad, 0.0, 0.1);
 }
 
+TEST(TrackHeading, ABoxWhoseLengthIsTheWidthOfTheTrackBeginsItsBoxAfresh) {
+  // what was seen first, with a piece of something else, was wider than long
+  Track track = trackOf(WholeBox{{{20.0, 0.0, 0.8}, 0.5 * M_PI, {3.5, 2.0, 1.0}, 100}, {}});
+  for (int i = 1; i <= 5; ++i) {
+    track.predict(at(0.1 * i));
+    track.update(SeenBox{{{20.0, 0.0, 0.8}, 0.0, {4.4, 1.7, 1.2}, 100}, {10.0, -8.0, 1.8}, {}}, 2.5);
+  }
+  EXPECT_NEAR(std::remainder(track.shape().yaw_rad, M_PI), 0.0, 0.1);
+  EXPECT_NEAR(track.shape().length(), 4.4, 0.3);
+  EXPECT_NEAR(track.shape().width(), 1.7, 0.3);
+}
+
 }  // namespace
 }  // namespace atlas

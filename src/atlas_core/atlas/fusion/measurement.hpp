@@ -38,6 +38,7 @@ struct YawReading {
 struct Measured {
   Rows rows;
   std::optional<YawReading> yaw;
+  double axis_log_odds = 0.0;  ///< that the track's length is its longer side, and not its width
   std::optional<Reading> middle_z_m, height_m;
 };
 /// How a track begins.

@@ -16,6 +16,7 @@ constexpr double kFarthest_m = 15.0;                  ///< a measurement is not 
 constexpr double kReach_m = 2.0;                      ///< around a track's own size and uncertainty
 constexpr std::size_t kCandidates = 32;               ///< nearest measurements that a track looks at
 constexpr double kLargest_m = 14.0, kWidest_m = 4.0;  ///< walls hold nothing
+constexpr double kTellSpeedSigma_mps = 1.2;           ///< nobody is told of an object that may move anyhow
 constexpr double kMargin_m = 0.4;                     ///< around a box: what begins there belongs to it
 
 void need(bool condition, const std::string& what, double value) {
@@ -153,6 +154,7 @@ void ObjectTracker::update(const Scan& scan, Counters& counters) {
     }
     counters.add("further measurements of an object");
     tracks_[owner].witness(*order[m], scan.input);
+    if (scan.detectability && column_of[owner] == kUnassigned) tracks_[owner].contradict(*order[m]);
   }
   end(counters);
 }
@@ -242,8 +244,10 @@ Objects ObjectTracker::reportFrom(Stamp stamp, bool confirmed_only) {
   Objects result;
   result.stamp = stamp;
   for (Track& track : tracks_) {
-    if (confirmed_only && !(track.confirmed() && track.existence() >= params_.tell_existence)) continue;
+    const bool known = track.confirmed() && track.existence() >= params_.tell_existence &&
+                       (track.told() || track.velocitySigma() <= kTellSpeedSigma_mps);
     track.remember(static_cast<std::size_t>(params_.history));
+    if (confirmed_only && !known) continue;
     result.objects.push_back(track.report(params_.static_probability));
   }
   return result;

@@ -20,6 +20,8 @@ constexpr double kLateral = 0.5;     ///< sine of the angle to the sight from wh
 constexpr double kLeastSine = 0.15;  ///< a side seen flatter than this shows no far end
 constexpr double kHasYaw_m = 1.2;    ///< outlines of smaller things have no direction
 constexpr double kLongAxis_m = 2.4;  ///< a longer side is the length of a vehicle
+constexpr double kElongated = 1.5;   ///< times as long as wide: the long side is the length, ...
+constexpr double kAxis = 0.5;        ///< ... log odds of one box, as boxes repeat their errors
 constexpr double kYaw_rad = 0.06;
 constexpr double kFastest_mps = 8.0;
 constexpr double kAnchor_m = 0.25;  ///< clusters differ from sweep to sweep
@@ -127,6 +129,8 @@ Measured SeenBox::measured(const TrackShape& track) const {
     const double longer = std::max(box.length, box.width);
     const double sigma = kYaw_rad * std::max(1.0, kLongAxis_m / longer);
     result.yaw = YawReading{box.yaw_rad, sigma * sigma, 2};
+    const bool tells = longer > kLongAxis_m && longer > kElongated * std::min(box.length, box.width);
+    if (tells) result.axis_log_odds = box.length > box.width ? kAxis : -kAxis;
   }
   // the top is seen when nothing hides it, the bottom ends above the ground
   const double top = box_.center.z() + 0.5 * box_.size.z();

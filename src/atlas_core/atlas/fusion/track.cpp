@@ -17,6 +17,8 @@ constexpr double kUnseen_s = 0.35;        ///< without a measurement
 constexpr double kMostCertain = 0.999;
 constexpr double kClimb_mps2_sqrt_s = 0.3, kClimb_mps = 0.3;  ///< slopes of roads
 constexpr double kHeightWalk_m_sqrt_s = 0.05;
+constexpr double kWayLeast_s = 0.4, kWay_s = 1.0;               ///< over which a speed shows as a way ...
+constexpr double kWayShare = 0.6;                               ///< ... of so much of what the speed says
 constexpr double kSurelyForward = 8.0, kWholeBoxForward = 3.0;  ///< log odds
 
 }  // namespace
@@ -93,7 +95,9 @@ TrackShape Track::shape() const {
 }
 
 void Track::update(const Measurement& measurement, double robust_sigmas) {
+  contradictions_ = 0;
   const Measured measured = measurement.measured(shape());
+  if (isContradicted(measured.axis_log_odds)) return restartBox(measurement);
   filter_.update(measured.rows, robust_sigmas);
   if (measured.yaw) readYaw(*measured.yaw);
   if (measured.middle_z_m) {
@@ -139,6 +143,25 @@ double Track::positionSigma() const {
   return std::sqrt(std::max(P(kPx, kPx), P(kPy, kPy)));
 }
 
+double Track::velocitySigma() const {
+  const auto& P = filter_.estimate().covariance;
+  return std::sqrt(std::max(P(kVx, kVx), P(kVy, kVy)));
+}
+
+/// Its speed is confirmed by the way that it has come: what becomes visible of a body moves it once.
+bool Track::hasMoved() const {
+  const ObjectPast* past = nullptr;
+  for (const ObjectPast& then : history_) {
+    if (toSeconds(stamp_ - then.stamp) < kWayLeast_s) break;
+    past = &then;
+    if (toSeconds(stamp_ - then.stamp) <= kWay_s) break;
+  }
+  if (past == nullptr) return false;
+  const Eigen::Vector2d v = filter_.estimate().mean.segment<2>(kVx);
+  const Eigen::Vector2d way = filter_.estimate().mean.head<2>() - past->position.head<2>();
+  return way.dot(v) >= kWayShare * v.squaredNorm() * toSeconds(stamp_ - past->stamp);
+}
+
 Object Track::report(double static_from) {
   const TrackState& state = filter_.estimate();
   Object object;
@@ -158,11 +181,12 @@ Object Track::report(double static_from) {
   object.z_variance_m2 = z_covariance_(0, 0);
   object.yaw_variance_rad2 = yaw_variance_rad2_;
   object.static_probability = filter_.standingProbability();
-  object.is_static = object.static_probability >= static_from;
+  object.is_static = object.static_probability >= static_from || !hasMoved();
   object.age_s = toSeconds(stamp_ - born_);
   object.unseen_s = toSeconds(stamp_ - seen_);
   object.detectability = detectability_;
   object.score = scores_ > 0 ? score_sum_ / scores_ : 0.0;
+  told_ = true;
   object.sources.swap(sources_);
   object.history.assign(history_.begin(), history_.end());
   return object;

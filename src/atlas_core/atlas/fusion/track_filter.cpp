@@ -145,6 +145,19 @@ double TrackFilter::standingProbability() const {
   return sum;
 }
 
+void TrackFilter::restartBox(const TrackState& born) {
+  for (TrackState& state : states_) {
+    for (const int i : {kPx, kPy, kLength, kWidth}) {
+      state.mean(i) = born.mean(i);
+      for (int j = 0; j < kTrackStates; ++j) {
+        const bool moves = j == kVx || j == kVy || j == kTurnRate;
+        state.covariance(i, j) = state.covariance(j, i) = moves ? 0.0 : born.covariance(i, j);
+      }
+    }
+  }
+  combine();
+}
+
 void TrackFilter::swapLengthAndWidth() {
   for (TrackState& state : states_) {
     std::swap(state.mean(kLength), state.mean(kWidth));

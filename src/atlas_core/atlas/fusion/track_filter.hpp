@@ -91,6 +91,8 @@ class TrackFilter {
   [[nodiscard]] const std::vector<double>& probabilities() const { return probability_; }
   /// That it stands, or moves slower than 0.5 m/s.
   [[nodiscard]] double standingProbability() const;
+  /// Place and size are those of `born`, whatever they were; how it moves stays.
+  void restartBox(const TrackState& born);
   /// Length and width change places: what was taken for the front is a side.
   void swapLengthAndWidth();
 

@@ -19,6 +19,9 @@ constexpr double kBoxForward = 0.5;                         ///< log odds of a d
 constexpr int kSidewaysUpdates = 4;
 constexpr double kWider = 1.15,
                  kWide_m = 2.2;  ///< what is so much wider than long was taken the wrong way round
+constexpr double kSureAxis = 3.0,
+                 kOtherAxis = 1.0;  ///< log odds: most, and from which its width is its length
+constexpr int kContradictions = 3;  ///< measurements in its place that did not fit it
 constexpr double kClassSure = 0.7;
 constexpr double kYawSigmas = 3.0;
 
@@ -42,6 +45,35 @@ void Track::readYaw(const YawReading& reading) {
   if (reading.period_parts != 1) return;
   forward_log_odds_ = std::clamp(forward_log_odds_ + (std::cos(full) > 0.0 ? kBoxForward : -kBoxForward),
                                  -kSurelyForward, kSurelyForward);
+}
+
+bool Track::isContradicted(double axis_log_odds) {
+  if (!physics().steers) return false;
+  axis_log_odds_ = std::clamp(axis_log_odds_ + axis_log_odds, -kSureAxis, kSureAxis);
+  return axis_log_odds_ < -kOtherAxis;
+}
+
+void Track::contradict(const Measurement& measurement) {
+  if (++contradictions_ >= kContradictions) restartBox(measurement);
+}
+
+void Track::restartBox(const Measurement& measurement) {
+  const std::optional<TrackBirth> birth = measurement.birth();
+  if (!birth) return;
+  filter_.restartBox(birth->shape.state);
+  const double turn = std::remainder(birth->shape.yaw_rad - yaw_rad_, M_PI);
+  if (std::abs(turn) > 0.25 * M_PI) forward_log_odds_ = 0.0;
+  yaw_rad_ = wrapAngle(yaw_rad_ + turn);
+  yaw_variance_rad2_ = birth->shape.yaw_variance_rad2;
+  z_ = {birth->shape.middle_z_m.value, 0.0};
+  z_covariance_ = Eigen::Vector2d(birth->shape.middle_z_m.variance, z_covariance_(1, 1)).asDiagonal();
+  height_m_ = birth->shape.height_m;
+  axis_log_odds_ = 0.0;
+  sideways_ = contradictions_ = 0;
+  std::fill(sized_.begin(), sized_.end(), 0);
+  weighClasses();
+  applySize();
+  seen_ = stamp_;
 }
 
 void Track::followCourse() {
@@ -114,6 +146,7 @@ void Track::swapAxes() {
   filter_.swapLengthAndWidth();
   yaw_rad_ = wrapAngle(yaw_rad_ + 0.5 * M_PI);
   forward_log_odds_ = 0.0;
+  axis_log_odds_ = 0.0;
   sideways_ = 0;
 }
 
