@@ -39,6 +39,19 @@ TEST(PixelSet, joinedAndCleared) {
   EXPECT_TRUE(placesOf(a).empty());
 }
 
+TEST(PixelSet, endsOfColumnsHaveNothingAboveOrBelow) {
+  PixelSet pixels(70, 4);
+  for (const int row : {0, 1, 3}) pixels.add(row, 65);
+  pixels.add(1, 2);
+  Places tops, bottoms;
+  for (int row = 0; row < 4; ++row) {
+    pixels.forEachEndInRow(row, -1, [&](int column) { tops.emplace_back(row, column); });
+    pixels.forEachEndInRow(row, 1, [&](int column) { bottoms.emplace_back(row, column); });
+  }
+  EXPECT_EQ(tops, (Places{{0, 65}, {1, 2}, {3, 65}}));
+  EXPECT_EQ(bottoms, (Places{{1, 2}, {1, 65}, {3, 65}}));
+}
+
 TEST(PixelSet, pixelsMayBeRemovedWhileTheyAreVisited) {
   PixelSet pixels(70, 1);
   for (int column = 0; column < 70; ++column) pixels.add(0, column);

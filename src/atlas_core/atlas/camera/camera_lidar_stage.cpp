@@ -8,6 +8,7 @@
 #include "atlas/camera/foreground.hpp"
 #include "atlas/camera/frustum.hpp"
 #include "atlas/camera/frustum_merge.hpp"
+#include "atlas/camera/pixel_box.hpp"
 
 namespace atlas {
 namespace {
@@ -34,12 +35,9 @@ std::vector<std::string> inputNames(const CameraLidarParams& params) {
 struct Candidate {
   std::uint32_t index;
   Detection2d box;  ///< part in the image
+  PixelBox pixels;  ///< the same
   std::vector<BoxPoint> points;
 };
-
-bool holds(const Detection2d& box, const ProjectedPoint& point) {
-  return point.u > box.x_min && point.u < box.x_max && point.v > box.y_min && point.v < box.y_max;
-}
 
 /// The smallest box around all boxes: most points of the road and of the sky lie outside.
 Detection2d around(const std::vector<Candidate>& candidates) {
@@ -246,21 +244,21 @@ std::vector<Frustum> CameraLidarStage::frustumsOf(const Waiting& waiting, const 
   for (std::uint32_t i = 0; i < waiting.detections.boxes.size(); ++i) {
     const Outcome<Detection2d> box = clipToImage(waiting.detections.boxes[i], intrinsics.model);
     if (box) {
-      candidates.push_back({i, *box, {}});
+      candidates.push_back({i, *box, PixelBox(*box), {}});
     } else {
       counters_.skip("detection", box.reason());
     }
   }
   if (candidates.empty()) return {};
   const Pose T_camera_map = T_map_camera.inverse();
-  const Detection2d all = around(candidates);
+  const PixelBox all(around(candidates));
   for (const CompactSweepPtr& sweep : waiting.sweeps) {
     intrinsics.projector.projectBatches(
         *sweep, T_camera_map, [&](const ProjectedPoint& point, const CompactSweep::Batch& batch) {
-          if (!holds(all, point)) return;
+          if (!all.holds(point)) return;
           const auto time_s = static_cast<float>(toSeconds(batch.stamp - waiting.detections.stamp));
           for (Candidate& c : candidates) {
-            if (holds(c.box, point)) c.points.push_back({point.u, point.v, point.depth_m, time_s});
+            if (c.pixels.holds(point)) c.points.push_back({point.u, point.v, point.depth_m, time_s});
           }
         });
   }

@@ -4,6 +4,7 @@
 // moves is only where the former are. Costs the time of its points, not of its pixels, once it exists.
 #pragma once
 
+#include <algorithm>
 #include <opencv2/core/mat.hpp>
 
 #include "atlas/camera/gap_filling.hpp"
@@ -28,8 +29,7 @@ class DepthBuffer {
     const int row = static_cast<int>(point.v + 0.5F);
     SparseDepth& layer = recent ? recent_ : older_;
     float& depth = layer.depth.ptr<float>(row)[column];
-    if (!(point.depth_m < depth)) return;
-    depth = point.depth_m;
+    depth = std::min(depth, point.depth_m);  // no branch: nobody can guess which point is the nearer
     layer.pixels.add(row, column);
   }
 

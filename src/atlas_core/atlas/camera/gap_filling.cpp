@@ -76,17 +76,18 @@ void fillColumns(cv::Mat& depth, cv::Mat& confidence, const PixelSet& filled, co
   std::vector<End> last(static_cast<std::size_t>(depth.cols));
   for (int row = 0; row < depth.rows; ++row) {
     const float *z = depth.ptr<float>(row), *sure = confidence.ptr<float>(row);
-    filled.forEachInRow(row, [&](int column) {
-      End& above = last[static_cast<std::size_t>(column)];
+    filled.forEachEndInRow(row, -1, [&](int column) {  // below a gap
+      const End& above = last[static_cast<std::size_t>(column)];
       const End here{row, z[column], sure[column]};
-      const int gap = row - above.at;
-      if (gap > 1 && above.depth != kNoDepth && gap <= filler.reach() && filler.belongTogether(above, here)) {
-        filler.between(above, here, [&](int at, float value, float how_sure) {
-          depth.ptr<float>(at)[column] = value;
-          confidence.ptr<float>(at)[column] = how_sure;
-        });
-      }
-      above = here;
+      if (above.depth == kNoDepth || row - above.at > filler.reach() || !filler.belongTogether(above, here))
+        return;
+      filler.between(above, here, [&](int at, float value, float how_sure) {
+        depth.ptr<float>(at)[column] = value;
+        confidence.ptr<float>(at)[column] = how_sure;
+      });
+    });
+    filled.forEachEndInRow(row, 1, [&](int column) {  // above one
+      last[static_cast<std::size_t>(column)] = {row, z[column], sure[column]};
     });
   }
 }

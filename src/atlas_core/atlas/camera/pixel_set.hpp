@@ -32,6 +32,19 @@ class PixelSet {
         visit(static_cast<int>(64 * w) + __builtin_ctzll(left));
     }
   }
+  /// The same for those whose neighbour above (side -1) or below (+1) holds nothing or is not in the image.
+  template <class Visit>
+  void forEachEndInRow(int row, int side, Visit&& visit) const {
+    const int beside = row + side;
+    const std::size_t first = static_cast<std::size_t>(row) * words_;
+    const std::size_t other = static_cast<std::size_t>(beside) * words_;
+    const bool inside = beside >= 0 && beside < height_;
+    for (std::size_t w = 0; w < words_; ++w) {
+      const std::uint64_t covered = inside ? bits_[other + w] : 0;
+      for (std::uint64_t left = bits_[first + w] & ~covered; left != 0; left &= left - 1)
+        visit(static_cast<int>(64 * w) + __builtin_ctzll(left));
+    }
+  }
   /// Calls visit(row, column), row by row.
   template <class Visit>
   void forEach(Visit&& visit) const {
