@@ -110,10 +110,10 @@ double load(const char* data) {
   return static_cast<double>(value);
 }
 
-double decode(const Field& field, const char* data) {
+double decodeRare(const Field& field, const char* data) {
   switch (field.type) {
     case 'F':
-      return field.size == 8 ? load<double>(data) : load<float>(data);
+      return load<double>(data);
     case 'U':
       return field.size == 8   ? load<std::uint64_t>(data)
              : field.size == 4 ? load<std::uint32_t>(data)
@@ -125,6 +125,11 @@ double decode(const Field& field, const char* data) {
              : field.size == 2 ? load<std::int16_t>(data)
                                : load<std::int8_t>(data);
   }
+}
+
+/// Nearly all fields are of four bytes with a point: no call for them.
+inline double decode(const Field& field, const char* data) {
+  return field.type == 'F' && field.size == 4 ? load<float>(data) : decodeRare(field, data);
 }
 
 bool isDecodable(const Field& field) {

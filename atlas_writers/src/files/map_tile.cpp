@@ -119,7 +119,7 @@ MapTile MapTile::load(const std::filesystem::path& path) {
   read(tile.sums_.data(), voxels * sizeof(Sum));
   tile.colours_.resize(colours);
   read(tile.colours_.data(), colours * sizeof(Colour));
-  tile.index_ = VoxelIndex(voxels);
+  tile.index_ = CachedVoxelIndex(voxels);
   for (const VoxelKey& key : keys) tile.index_.insert(key);
   return tile;
 }

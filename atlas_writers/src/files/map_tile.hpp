@@ -46,7 +46,7 @@ class MapTile {
 
   std::uint32_t numberOf(const VoxelKey& key);
 
-  VoxelIndex index_;
+  CachedVoxelIndex index_;
   std::vector<Sum> sums_;
   std::vector<Colour> colours_;  ///< of the first voxels; the others have none
   std::size_t voxels_ = 0;

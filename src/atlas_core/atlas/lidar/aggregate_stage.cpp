@@ -77,7 +77,9 @@ MapCloud aggregate(const std::deque<BatchedSweepPtr>& sweeps, Stamp stamp, doubl
   MapCloud result;
   result.stamp = stamp;
   std::optional<VoxelFilter> filter;
-  if (voxel_m > 0.0) filter.emplace(voxel_m, VoxelPoint::kFirst);
+  std::size_t points = 0;
+  for (const BatchedSweepPtr& sweep : sweeps) points += sweep->sweep->points.size();
+  if (voxel_m > 0.0) filter.emplace(voxel_m, VoxelPoint::kFirst, points / 8);
   for (const BatchedSweepPtr& sweep : sweeps) {
     const auto offset_s = static_cast<float>(toSeconds(sweep->stamp - stamp));
     const MapCloud cloud = inMap(*sweep);

@@ -61,4 +61,35 @@ class VoxelIndex {
   std::size_t mask_ = 0;
 };
 
+/// The same for a large index and many points that fall on the same voxels again soon: remembers where some
+/// of the last ones are, as every look into the large table waits for memory.
+class CachedVoxelIndex {
+ public:
+  explicit CachedVoxelIndex(std::size_t expected = 0) : index_(expected), recent_(kRecent) {}
+
+  std::uint32_t insert(const VoxelKey& key) {
+    Recent& recent = recent_[placeOf(key)];
+    if (recent.number == VoxelIndex::kNone || !(recent.key == key)) recent = {key, index_.insert(key)};
+    return recent.number;
+  }
+  [[nodiscard]] const std::vector<VoxelKey>& keys() const { return index_.keys(); }
+  [[nodiscard]] std::size_t size() const { return index_.size(); }
+
+ private:
+  static constexpr std::size_t kRecent = 2048;  ///< 32 kB
+  struct Recent {
+    VoxelKey key;
+    std::uint32_t number = VoxelIndex::kNone;
+  };
+  /// Neighbours do not replace each other.
+  static std::size_t placeOf(const VoxelKey& key) {
+    const auto x = static_cast<std::uint32_t>(key.x), y = static_cast<std::uint32_t>(key.y),
+               z = static_cast<std::uint32_t>(key.z);
+    return (x + 37 * y + 1031 * z) % kRecent;
+  }
+
+  VoxelIndex index_;
+  std::vector<Recent> recent_;
+};
+
 }  // namespace atlas
