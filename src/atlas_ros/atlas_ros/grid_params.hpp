@@ -94,6 +94,8 @@ void readParams(Reader& reader, atlas::OccupancyParams& p) {
   reader.readOptional("change_per_s", f.change_per_s);
   reader.readOptional("accelerate_per_s", f.accelerate_per_s);
   reader.readOptional("start_per_s", f.start_per_s);
+  reader.readOptional("stop_per_s", f.stop_per_s);
+  reader.readOptional("vanish_per_s", f.vanish_per_s);
   reader.readOptional("forget_free_s", f.forget_free_s);
   reader.readOptional("forget_moving_s", f.forget_moving_s);
   reader.readOptional("forget_static_s", f.forget_static_s);

@@ -141,12 +141,13 @@ void BeamModel::addHits(int ranges) {
   }
   for (int a = 0; a < kAzimuths; ++a) {
     if (bins_.hit[a] <= 0.0F) continue;
-    const double z = bins_.end_m[a];
-    const int first = std::max(0, static_cast<int>(std::ceil((z - reach) / step_m_)));
-    const int last = std::min(ranges - 1, static_cast<int>(std::floor((z + reach) / step_m_)));
+    const double z = bins_.end_m[a], span = bins_.span_m[a];
+    const int first = std::max(0, static_cast<int>(std::ceil((z - span - reach) / step_m_)));
+    const int last = std::min(ranges - 1, static_cast<int>(std::floor((z + span + reach) / step_m_)));
     for (int r = first; r <= last; ++r) {
       log_odds_[static_cast<std::size_t>(r) * kAzimuths + static_cast<std::size_t>(a)] +=
-          by_cm[static_cast<std::size_t>(std::abs(r * step_m_ - z) * 100.0 + 0.5)] * bins_.hit[a];
+          by_cm[static_cast<std::size_t>(std::max(0.0, std::abs(r * step_m_ - z) - span) * 100.0 + 0.5)] *
+          bins_.hit[a];
     }
   }
 }

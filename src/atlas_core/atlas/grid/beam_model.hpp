@@ -74,6 +74,7 @@ class BeamModel {
   struct Bins {
     std::vector<float> seen_to_m;      ///< up to here beams passed, 0: none was sent
     std::vector<float> start_m, rise;  ///< height above the road of the beam: start + rise * range
+    std::vector<float> span_m;         ///< half of what the surface covers of the range within the azimuth
     std::vector<float> end_m, hit;     ///< range of an obstacle, 0: none; how surely it is one, 0..1
   };
   struct Ray {

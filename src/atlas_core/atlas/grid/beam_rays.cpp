@@ -58,9 +58,9 @@ std::vector<BeamModel::Ray> BeamModel::raysOf(const LidarLayer& layer, const Pos
   return rays;
 }
 
-/// Two returns next to each other that go on as the ones before or after them do are of one surface, however
-/// flat the beams meet it: between them it is there as well. A step from one thing to another has no such
-/// neighbour.
+/// Two returns next to each other that go on as the ones before and after them do are of one surface, however
+/// flat the beams meet it: between them it is there as well. A step from one thing to another is another step
+/// than those along either of them.
 void BeamModel::bridge(std::vector<Ray>& rays, double spacing_bins) {
   const auto jump = [&](std::size_t i) { return rays[i + 1].range - rays[i].range; };
   const auto joined = [&](std::size_t i) {
@@ -70,10 +70,10 @@ void BeamModel::bridge(std::vector<Ray>& rays, double spacing_bins) {
   };
   for (std::size_t i = 0; i + 1 < rays.size(); ++i) {
     if (!joined(i)) continue;
-    const double limit = 0.12 + 0.35 * std::abs(jump(i));
+    const double limit = 0.08 + 0.2 * std::abs(jump(i));
     const bool before = i > 0 && joined(i - 1) && std::abs(jump(i - 1) - jump(i)) <= limit;
     const bool after = i + 2 < rays.size() && joined(i + 1) && std::abs(jump(i + 1) - jump(i)) <= limit;
-    if (!before && !after) continue;
+    if (!before || !after) continue;
     const double step = std::remainder(rays[i + 1].bin - rays[i].bin, static_cast<double>(kAzimuths));
     if (step == 0.0) continue;
     const double per_bin = jump(i) / step;  // the side of each ray towards the other
@@ -83,7 +83,8 @@ void BeamModel::bridge(std::vector<Ray>& rays, double spacing_bins) {
 }
 
 void BeamModel::fillBins(const LidarLayer& layer, const Pose& T_map_lidar, const RoadPlane& road) {
-  for (auto* values : {&bins_.seen_to_m, &bins_.start_m, &bins_.rise, &bins_.end_m, &bins_.hit})
+  for (auto* values :
+       {&bins_.seen_to_m, &bins_.start_m, &bins_.rise, &bins_.span_m, &bins_.end_m, &bins_.hit})
     values->assign(kAzimuths, 0.0F);
   const Eigen::Vector3d& origin = T_map_lidar.translation;
   const double start = origin.z() - road.heightAt(origin.x(), origin.y());
@@ -96,15 +97,16 @@ void BeamModel::fillBins(const LidarLayer& layer, const Pose& T_map_lidar, const
               last = static_cast<int>(std::floor(ray.bin + half));
     for (int b = first; b <= last; ++b) {
       const auto bin = static_cast<std::size_t>(polar::wrapped(b));
-      const double off = b + 0.5 - ray.bin,
-                   range = ray.range + off * (off > 0.0 ? ray.slope_up : ray.slope_down);
+      const double off = b + 0.5 - ray.bin, slope = off > 0.0 ? ray.slope_up : ray.slope_down;
+      const double range = ray.range + off * slope, span = 0.5 * std::abs(slope);
       // A return from the road or from high above says nothing against what is before it, nor for an
       // obstacle.
-      const double passed = ray.returned ? range - reach : range;
+      const double passed = ray.returned ? range - span - reach : range;
       const bool nearer_hit = ray.sure > 0.0 && (bins_.end_m[bin] == 0.0F || range < bins_.end_m[bin]);
       if (nearer_hit) {
         bins_.end_m[bin] = static_cast<float>(range);
         bins_.hit[bin] = static_cast<float>(ray.sure);
+        bins_.span_m[bin] = static_cast<float>(span);
       }
       const bool first_here = bins_.seen_to_m[bin] == 0.0F;
       if (nearer_hit || first_here || (bins_.end_m[bin] == 0.0F && passed < bins_.seen_to_m[bin])) {

@@ -27,10 +27,14 @@ void predict(const VelocityLattice& lattice, const LatticeRates& rates, int grou
       next[k] = own + accelerate * (around - 4.0F * own);
     }
   }
-  // Standing things start more rarely than slow ones stop.
-  const Lanes kept = (accelerate - rates.start) * belief[standing * kGroups];
-  for (const int slow : {standing - side, standing - 1, standing + 1, standing + side}) next[slow] -= kept;
-  next[standing] += 4.0F * kept;
+  // Between standing and slow things go other rates, by which standing ones are the more frequent.
+  const Lanes stood = belief[standing * kGroups];
+  for (const int slow : {standing - side, standing - 1, standing + 1, standing + side}) {
+    const Lanes kept =
+        (accelerate - rates.start) * stood - (accelerate - rates.stop) * belief[slow * kGroups];
+    next[slow] -= kept;
+    next[standing] += kept;
+  }
   Lanes moving{};
   for (int k = 0; k < standing; ++k) moving += next[k];
   for (int k = standing + 1; k < side * side; ++k) moving += next[k];

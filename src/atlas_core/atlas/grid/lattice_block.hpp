@@ -18,7 +18,7 @@ struct VelocityLattice {
 
 /// Probabilities of one step, and the shares of what is new that stands.
 struct LatticeRates {
-  float birth = 0, change = 0, vanish = 0, accelerate = 0, start = 0;
+  float birth = 0, change = 0, vanish = 0, accelerate = 0, start = 0, stop = 0;
   float forget_free = 0, forget_moving = 0, forget_static = 0;
   float static_share = 0, static_share_free = 0;
 };

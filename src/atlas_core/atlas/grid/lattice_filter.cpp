@@ -75,6 +75,7 @@ LatticeRates LatticeFilter::ratesOf(double dt_s) const {
   rates.vanish = share(params_.vanish_per_s, dt_s);
   rates.accelerate = 0.25F * share(4.0 * params_.accelerate_per_s, dt_s);
   rates.start = 0.25F * share(4.0 * params_.start_per_s, dt_s);
+  rates.stop = 0.25F * share(4.0 * params_.stop_per_s, dt_s);
   rates.forget_free = share(1.0 / params_.forget_free_s, dt_s);
   rates.forget_moving = share(1.0 / params_.forget_moving_s, dt_s);
   rates.forget_static = share(1.0 / params_.forget_static_s, dt_s);

@@ -31,7 +31,8 @@ void validate(const FilterParams& p) {
                                    {"vanish_per_s", p.vanish_per_s},
                                    {"change_per_s", p.change_per_s},
                                    {"accelerate_per_s", p.accelerate_per_s},
-                                   {"start_per_s", p.start_per_s}})
+                                   {"start_per_s", p.start_per_s},
+                                   {"stop_per_s", p.stop_per_s}})
     need(rate >= 0.0 && rate <= 100.0, std::string(name) + " must lie in [0, 100]", rate);
   for (const auto& [name, time] : {std::pair<const char*, double>{"forget_free_s", p.forget_free_s},
                                    {"forget_moving_s", p.forget_moving_s},

@@ -30,6 +30,7 @@ struct FilterParams {
   double change_per_s = 0.2;        ///< something takes up any other velocity
   double accelerate_per_s = 0.4;    ///< something moving takes up the next velocity, each of the four ways
   double start_per_s = 0.04;        ///< something standing takes up a lowest velocity, each of the four
+  double stop_per_s = 0.1;          ///< something at a lowest velocity stands
   double forget_free_s = 0.4;       ///< time constants of unseen cells: empty becomes unknown
   double forget_moving_s = 1.0;     ///< a moving thing becomes unknown
   double forget_static_s = 10.0;    ///< a standing thing becomes unknown

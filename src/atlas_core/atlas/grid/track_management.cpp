@@ -12,6 +12,7 @@ namespace atlas {
 namespace {
 
 constexpr double kSame_sq = 9.49;  ///< chi-square, 4 degrees of freedom, 95 %
+constexpr double kSharedSigma_mps = 0.8;
 constexpr double kLeastBelief = 0.02, kMostBelief = 0.98;
 constexpr double kTentativeLost_s = 0.3;
 constexpr double kWholeGap_m = 6.0;      ///< between the parts of one long vehicle that are seen
@@ -92,12 +93,15 @@ void ClusterTracker::believe(const std::vector<Pair>& ambiguous, const std::vect
   }
 }
 
-/// Their states agree: velocities, and places up to what lies between their boxes.
+/// Their states agree: velocities, and places up to what lies between their boxes. Where a cluster was shared
+/// out is no edge of an object, so tracks that share one know their velocities less well than they think.
 bool ClusterTracker::oneThing(const ClusterTrack& a, const ClusterTrack& b) const {
   Eigen::Vector4d d = a.state() - b.state();
   const double distance = d.head<2>().norm(), gap = gapBetween(a.box(), b.box());
   d.head<2>() *= distance > 1e-6 ? std::min(gap, params_.region_margin_m) / distance : 0.0;
-  return d.dot((a.covariance() + b.covariance()).inverse() * d) < kSame_sq;
+  Eigen::Matrix4d P = a.covariance() + b.covariance();
+  P.diagonal().tail<2>().array() += kSharedSigma_mps * kSharedSigma_mps;
+  return d.dot(P.inverse() * d) < kSame_sq;
 }
 
 void ClusterTracker::merge(std::vector<Cluster>& observed, Counters& counters) {
