@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kCoreMargin_m = 0.25;  ///< around a predicted box: a cell and its noise
 constexpr double kShareOfCluster = 0.25, kShareOfTrack = 0.5;  ///< see claims()
+constexpr double kDrives_mps = 3.0;    ///< slower things are not told from people beside them by growth
 constexpr double kStranger_sq = 2.25;  ///< m^2/s^2: clusters that differ by more are not parts of one object
 constexpr double kAlike_sq = 9.0;      ///< Mahalanobis distance of velocities that may be the same
 
@@ -111,6 +112,7 @@ std::vector<std::vector<std::size_t>> ClusterTracker::claims(const std::vector<C
     if (!any && fallback < clusters.size()) claimed[fallback].push_back(t);
   }
   leaveStrangers(clusters, claimed);
+  addGrowth(clusters, claimed);
   return claimed;
 }
 
@@ -128,6 +130,23 @@ void ClusterTracker::leaveStrangers(const std::vector<Cluster>& clusters,
     const ClusterMean a = meanOf(clusters[c]), b = meanOf(clusters[largest[claimed[c].front()]]);
     const double difference_sq = (a.velocity - b.velocity).squaredNorm();
     if (difference_sq > std::max(kStranger_sq, a.variance + b.variance)) claimed[c].clear();
+  }
+}
+
+/// More of a thing that drives comes into view where it was not seen before: beside its box, moving with it.
+void ClusterTracker::addGrowth(const std::vector<Cluster>& clusters,
+                               std::vector<std::vector<std::size_t>>& claimed) const {
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    if (!claimed[c].empty()) continue;
+    const ClusterMean mean = meanOf(clusters[c]);
+    for (std::size_t t = 0; t < tracks_.size() && claimed[c].empty(); ++t) {
+      const Eigen::Vector2d v = tracks_[t].velocity();
+      if (v.norm() < kDrives_mps || (v - mean.velocity).squaredNorm() > std::max(kStranger_sq, mean.variance))
+        continue;
+      const auto inside =
+          static_cast<double>(cellsIn(clusters[c], tracks_[t].region(params_.region_margin_m)));
+      if (inside >= 0.5 * static_cast<double>(clusters[c].size())) claimed[c].push_back(t);
+    }
   }
 }
 

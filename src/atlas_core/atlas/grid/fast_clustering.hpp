@@ -29,7 +29,7 @@ struct ClusterTrackParams {
   double ambiguous_different = 0.2;  ///< P(F | not S)
   double initial_same = 0.1;         ///< P(S) of two tracks that meet
   double merge_above = 0.9;          ///< P(S) that merges, if their states agree as well
-  double acceleration_mps2 = 2.5;    ///< standard deviation of what objects do against constant velocity
+  double acceleration_mps2 = 4.0;    ///< standard deviation of what objects do against constant velocity
   int confirm_hits = 3, confirm_of = 5;  ///< a track is told of after so many observations of so many
   double lost_visible_s = 1.0;           ///< a track whose place is seen empty ends after
   double lost_hidden_s = 3.0;            ///< a track whose place is hidden ends after
@@ -65,6 +65,7 @@ class ClusterTracker {
   [[nodiscard]] std::vector<std::vector<std::size_t>> claims(const std::vector<Cluster>& clusters) const;
   void leaveStrangers(const std::vector<Cluster>& clusters,
                       std::vector<std::vector<std::size_t>>& claimed) const;
+  void addGrowth(const std::vector<Cluster>& clusters, std::vector<std::vector<std::size_t>>& claimed) const;
   void shareAmong(const Cluster& cluster, const std::vector<std::size_t>& claimants, bool wall,
                   std::vector<Cluster>& observed) const;
   void addPartsOfWholes(const GridView& view, std::vector<Pair>& ambiguous) const;
