@@ -16,6 +16,8 @@ class MapTile {
  public:
   /// key: the voxel of the point; x, y, z: map, m.
   void add(const VoxelKey& key, double x, double y, double z, float intensity, double voxel_m);
+  /// Tells some dozen points before that this voxel comes.
+  void expect(const VoxelKey& key) const { index_.expect(key); }
   /// What a camera saw in a voxel, from `depth_m` away. A colour alone makes no point of the map.
   void addColour(const VoxelKey& key, const ColouredPoint& seen);
   /// All voxels with returns in order of (z, y, x), whatever the order in which they were met.

@@ -2,6 +2,7 @@
 #include "files/map_writer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -72,17 +73,28 @@ MapWriter::Tile& MapWriter::tileAt(const TileKey& key) {
 
 template <class Point, class Visit>
 void MapWriter::forEachVoxel(const std::vector<Point>& points, Visit&& visit) {
+  constexpr std::size_t kAhead = 64;  // points whose voxels are fetched while others are worked on
+  std::array<std::optional<VoxelKey>, kAhead> voxels;
   std::optional<TileKey> key;
   Tile* tile = nullptr;  // of the point before: neighbours in a sweep are neighbours in space
-  for (const Point& p : points) {
-    const std::optional<VoxelKey> voxel = voxelOf(p.x, p.y, p.z, params_.voxel_m);
-    if (!voxel) continue;
-    const TileKey tile_key{floorDiv(voxel->x, voxels_per_tile_), floorDiv(voxel->y, voxels_per_tile_)};
-    if (!key || *key != tile_key) {
-      key = tile_key;
-      tile = &tileAt(tile_key);
+  for (std::size_t first = 0; first < points.size(); first += kAhead) {
+    const std::size_t count = std::min(kAhead, points.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point& p = points[first + i];
+      voxels[i] = voxelOf(p.x, p.y, p.z, params_.voxel_m);
+      if (tile != nullptr && voxels[i])
+        tile->content.expect(*voxels[i]);  // a guess: most lie in the same tile
     }
-    visit(p, *voxel, tile->content);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::optional<VoxelKey>& voxel = voxels[i];
+      if (!voxel) continue;
+      const TileKey tile_key{floorDiv(voxel->x, voxels_per_tile_), floorDiv(voxel->y, voxels_per_tile_)};
+      if (!key || *key != tile_key) {
+        key = tile_key;
+        tile = &tileAt(tile_key);
+      }
+      visit(points[first + i], *voxel, tile->content);
+    }
   }
 }
 

@@ -31,6 +31,8 @@ class VoxelIndex {
     }
     return slot;
   }
+  /// Starts to fetch what insert() or find() of this voxel will look at: worth it some dozen voxels ahead.
+  void expect(const VoxelKey& key) const { __builtin_prefetch(&slots_[firstSlotOf(key)]); }
   /// kNone when the voxel was never inserted.
   [[nodiscard]] std::uint32_t find(const VoxelKey& key) const { return slots_[slotOf(key)]; }
   /// By number.
@@ -38,13 +40,18 @@ class VoxelIndex {
   [[nodiscard]] std::size_t size() const { return keys_.size(); }
 
  private:
-  [[nodiscard]] std::size_t slotOf(const VoxelKey& key) const {
+  [[nodiscard]] static std::uint64_t hashOf(const VoxelKey& key) {
     // multiplication by odd constants and folding of the high half: neighbours spread over the table
     std::uint64_t h = static_cast<std::uint32_t>(key.x) * 0x9E3779B97F4A7C15ULL;
     h ^= static_cast<std::uint32_t>(key.y) * 0xC2B2AE3D27D4EB4FULL;
     h ^= static_cast<std::uint32_t>(key.z) * 0x165667B19E3779F9ULL;
-    h = (h ^ (h >> 32)) * 0xD6E8FEB86659FD93ULL;
-    std::size_t slot = static_cast<std::size_t>(h >> 32) & mask_;
+    return (h ^ (h >> 32)) * 0xD6E8FEB86659FD93ULL;
+  }
+  [[nodiscard]] std::size_t firstSlotOf(const VoxelKey& key) const {
+    return static_cast<std::size_t>(hashOf(key) >> 32) & mask_;
+  }
+  [[nodiscard]] std::size_t slotOf(const VoxelKey& key) const {
+    std::size_t slot = firstSlotOf(key);
     while (slots_[slot] != kNone && !(keys_[slots_[slot]] == key)) slot = (slot + 1) & mask_;
     return slot;
   }
@@ -71,6 +78,10 @@ class CachedVoxelIndex {
     Recent& recent = recent_[placeOf(key)];
     if (recent.number == VoxelIndex::kNone || !(recent.key == key)) recent = {key, index_.insert(key)};
     return recent.number;
+  }
+  void expect(const VoxelKey& key) const {
+    const Recent& recent = recent_[placeOf(key)];
+    if (recent.number == VoxelIndex::kNone || !(recent.key == key)) index_.expect(key);
   }
   [[nodiscard]] const std::vector<VoxelKey>& keys() const { return index_.keys(); }
   [[nodiscard]] std::size_t size() const { return index_.size(); }
