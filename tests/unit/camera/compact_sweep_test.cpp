@@ -62,6 +62,19 @@ TEST(CompactSweep, emptyIsEmpty) {
   EXPECT_TRUE(nothing->batches[0].bounds.empty());
 }
 
+TEST(CompactSweep, isMadeOnceForAllWhoCountTheSweepAlike) {
+  const auto sweep = sixPoints();
+  const Origin origin{"lidar/batches", kStart, 3, {}};
+  const CompactSweepPtr first = compactedOnce(*sweep, origin);
+  EXPECT_EQ(compactedOnce(*sweep, origin), first);
+  const CompactSweepPtr other = compactedOnce(*sweep, {"lidar/batches", kStart, 4, {}});
+  EXPECT_EQ(other->origin.index, 4U);
+  EXPECT_EQ(first->origin.index, 3U);
+  BatchedSweep changed = *sweep;  // begins without
+  changed.batches.clear();
+  EXPECT_TRUE(compactedOnce(changed, origin)->x.empty());
+}
+
 /// One turn of a lidar at half a metre's distance from the camera: 100 batches of 32 lasers in firing order.
 std::shared_ptr<BatchedSweep> turn(bool by_laser, unsigned seed) {
   std::mt19937 random(seed);

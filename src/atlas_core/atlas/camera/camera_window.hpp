@@ -4,7 +4,6 @@
 
 #include <deque>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "atlas/base/time.hpp"
@@ -41,8 +40,8 @@ class CameraWindow {
 
   /// Sweeps come in stamp order; those without pose are not kept (null), those that no image at or after this
   /// stamp can see are dropped.
-  CompactSweepPtr push(const BatchedSweepPtr& batched, Origin origin = {}) {
-    const CompactSweepPtr sweep = batched->batches.empty() ? nullptr : compacted(*batched, std::move(origin));
+  CompactSweepPtr push(const BatchedSweepPtr& batched, const Origin& origin = {}) {
+    const CompactSweepPtr sweep = batched->batches.empty() ? nullptr : compactedOnce(*batched, origin);
     if (sweep) sweeps_.push_back(sweep);
     while (!sweeps_.empty() && sweeps_.front()->stamp <= batched->stamp - length_) sweeps_.pop_front();
     return sweep;

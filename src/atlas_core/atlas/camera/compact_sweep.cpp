@@ -41,4 +41,10 @@ CompactSweepPtr compacted(const BatchedSweep& batched, Origin origin) {
   return result;
 }
 
+CompactSweepPtr compactedOnce(const BatchedSweep& batched, const Origin& origin) {
+  const CompactSweepPtr kept = batched.compact.get([&] { return compacted(batched, origin); });
+  const bool same = kept->origin.topic == origin.topic && kept->origin.index == origin.index;
+  return same ? kept : compacted(batched, origin);
+}
+
 }  // namespace atlas

@@ -29,5 +29,7 @@ using CompactSweepPtr = std::shared_ptr<const CompactSweep>;
 
 /// The returns of the sweep; points without return are left out.
 [[nodiscard]] CompactSweepPtr compacted(const BatchedSweep& batched, Origin origin = {});
+/// The same, shared by all stages that have the sweep and count it alike.
+[[nodiscard]] CompactSweepPtr compactedOnce(const BatchedSweep& batched, const Origin& origin);
 
 }  // namespace atlas

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "atlas/base/avx2_clones.hpp"
+
 namespace atlas {
 namespace {
 constexpr int kBorderSteps = 64;        // bearings taken along each side of the image
@@ -66,6 +68,7 @@ void Projector::boundField(const CameraModel& model) {
   max_y_ = static_cast<float>(std::min(limit, high.y() + kBorderMargin));
 }
 
+ATLAS_AVX2_CLONES
 void Projector::seeBlock(const CompactSweep& sweep, std::size_t first, std::size_t count,
                          const Eigen::Matrix<float, 3, 4>& T_camera_lidar, Block& block) const {
   const float *x = &sweep.x[first], *y = &sweep.y[first], *z = &sweep.z[first];

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <cstdint>
 
+#include "atlas/base/avx2_clones.hpp"
+
 namespace atlas {
 namespace {
 constexpr float kUnitsPerMetre = 256.0F;
 constexpr float kLargestUnit = 65535.0F;
 }  // namespace
 
+ATLAS_AVX2_CLONES
 cv::Mat depthTo16Bit(const cv::Mat& depth_m) {
   cv::Mat units(depth_m.rows, depth_m.cols, CV_16UC1, cv::Scalar(0));
   for (int row = 0; row < depth_m.rows; ++row) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "atlas/base/made_once.hpp"
 #include "atlas/sensor/sensor.hpp"
 
 namespace atlas {
@@ -40,6 +41,7 @@ struct Batch {
   Stamp stamp = 0;  ///< time of the pose
   Pose T_map_lidar;
 };
+struct CompactSweep;  // camera/compact_sweep.hpp
 struct BatchedSweep {
   Stamp stamp = 0;
   std::string frame;           ///< lidar frame
@@ -48,7 +50,8 @@ struct BatchedSweep {
   /// Batch of each point, for sweeps whose points are not stored in order of time (laser by laser); else
   /// empty.
   std::vector<std::uint16_t> batch_of_point;
-  Pose T_map_lidar;  ///< at the sweep's stamp; meaningful when batches is not empty
+  Pose T_map_lidar;                ///< at the sweep's stamp; meaningful when batches is not empty
+  MadeOnce<CompactSweep> compact;  ///< of compactedOnce()
 };
 
 /// Calls visit(point index, batch) for every point in the order of the sweep; nothing when there are no
