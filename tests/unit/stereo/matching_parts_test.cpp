@@ -98,7 +98,8 @@ TEST(Refinement, DoublesAlongSurfacesOnly) {
   half.col(2).setTo(10 * 256 + 64);
   half.col(3).setTo(30 * 256);  // another surface
   half.at<std::int32_t>(0, 0) = kNoDisparity;
-  const cv::Mat full = doubled(half, {7, 6});
+  cv::Mat full(6, 7, CV_32SC1);
+  doubled(half, full);
   EXPECT_EQ(full.at<std::int32_t>(0, 0), kNoDisparity);
   EXPECT_EQ(full.at<std::int32_t>(3, 2), 20 * 256);
   EXPECT_EQ(full.at<std::int32_t>(3, 3), 20 * 256 + 32);  // a quarter of the way to the next one

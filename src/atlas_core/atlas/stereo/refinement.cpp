@@ -109,18 +109,16 @@ ATLAS_AVX2_CLONES void stepRow(const std::int32_t* __restrict squares,
 
 }  // namespace
 
-cv::Mat doubled(const cv::Mat& half, cv::Size full) {
-  cv::Mat result(full, CV_32SC1);
+void doubled(const cv::Mat& half, cv::Mat& full) {
   const std::size_t width = static_cast<std::size_t>(half.cols);
   Row32 near(width + 2, kNoDisparity), far(width + 2, kNoDisparity), row(2 * width);
-  for (int v = 0; v < full.height; ++v) {
+  for (int v = 0; v < full.rows; ++v) {
     const int at = v / 2, beside = std::clamp(v % 2 == 0 ? at - 1 : at + 1, 0, half.rows - 1);
     std::copy_n(half.ptr<std::int32_t>(at), width, near.begin() + 1);
     std::copy_n(half.ptr<std::int32_t>(beside), width, far.begin() + 1);
     doubleRow(near.data() + 1, far.data() + 1, half.cols, row.data());
-    std::copy_n(row.begin(), full.width, result.ptr<std::int32_t>(v));
+    std::copy_n(row.begin(), full.cols, full.ptr<std::int32_t>(v));
   }
-  return result;
 }
 
 void refine(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) {

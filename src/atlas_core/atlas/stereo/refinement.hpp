@@ -12,8 +12,8 @@
 namespace atlas {
 
 /// `half`: CV_32SC1, 1/256 px of its own pixels, kNoDisparity where there is none (of an image made by
-/// halved()). CV_32SC1 of size `full`, 1/256 px of its pixels.
-cv::Mat doubled(const cv::Mat& half, cv::Size full);
+/// halved()). `full`: CV_32SC1 of the size of that image, overwritten with 1/256 px of its pixels.
+void doubled(const cv::Mat& half, cv::Mat& full);
 
 /// `disparity` in place: see above; `left`, `right`: CV_8UC1 of the same size. A step is at most one pixel.
 void refine(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity);

@@ -37,7 +37,7 @@ void removeSpeckles(DisparityMethod::Match& match, int pixels, double step_px) {
 class PathMethod : public DisparityMethod {
  public:
   PathMethod(cv::Size size, const StereoParams& params)
-      : size_(size),
+      : full_(size, CV_32SC1),
         speckle_(params.speckle_px / 4),
         matcher_({(size.width + 1) / 2, (size.height + 1) / 2}, (params.range_px + 1) / 2, params.paths) {}
 
@@ -52,20 +52,23 @@ class PathMethod : public DisparityMethod {
         matcher_.match(censusOf(halved(left)), censusOf(half_right), of_road ? &*of_road : nullptr);
     Match half{found.disparity, found.surface};
     removeSpeckles(half, speckle_, 0.5 * kSpeckleStep_px);
-    Match result{doubled(half.disparity, size_), cv::Mat()};
-    refine(left, right, result.disparity);
-    result.surface = doubledLabels(half.surface);
-    return result;
+    doubled(half.disparity, full_);
+    refine(left, right, full_);
+    return {full_, doubledLabels(half.surface)};
   }
 
  private:
   [[nodiscard]] cv::Mat doubledLabels(const cv::Mat& half) const {
-    cv::Mat full;
-    cv::resize(half, full, {2 * half.cols, 2 * half.rows}, 0, 0, cv::INTER_NEAREST);
-    return full(cv::Rect({0, 0}, size_)).clone();
+    cv::Mat full(full_.size(), CV_8UC1);
+    for (int v = 0; v < full.rows; ++v) {
+      const std::uint8_t* from = half.ptr<std::uint8_t>(v / 2);
+      std::uint8_t* to = full.ptr<std::uint8_t>(v);
+      for (int u = 0; u < full.cols; ++u) to[u] = from[u / 2];
+    }
+    return full;
   }
 
-  cv::Size size_;
+  cv::Mat full_;  ///< kept from image to image: new memory costs more than what is done with it
   int speckle_;
   PathMatcher matcher_;
 };

@@ -42,7 +42,7 @@ class DisparityMethod {
     cv::Mat surface;    ///< CV_8UC1 of SurfaceLabel
   };
   virtual ~DisparityMethod() = default;
-  /// `left`, `right`: CV_8UC1 of the rig's size; `road`: null when it is unknown.
+  /// `left`, `right`: CV_8UC1 of the rig's size; `road`: null when it is unknown. Valid until the next call.
   virtual Match match(const cv::Mat& left, const cv::Mat& right, const RoadProfile* road) = 0;
 };
 
