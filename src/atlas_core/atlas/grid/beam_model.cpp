@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 
 namespace atlas {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atlas/grid/lattice_block.hpp"
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 
 namespace atlas {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 
 namespace atlas {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 #include "atlas/stereo/disparity_image.hpp"
 
 namespace atlas {

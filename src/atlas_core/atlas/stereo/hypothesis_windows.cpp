@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 
 namespace atlas {
 namespace {

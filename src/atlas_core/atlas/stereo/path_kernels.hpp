@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 
 namespace atlas::path {
 

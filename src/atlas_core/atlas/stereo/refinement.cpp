@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 #include "atlas/stereo/disparity_choice.hpp"
 #include "atlas/stereo/disparity_image.hpp"
 

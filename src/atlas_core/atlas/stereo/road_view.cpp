@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 
 namespace atlas {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "atlas/stereo/avx2_clones.hpp"
+#include "atlas/base/avx2_clones.hpp"
 #include "atlas/stereo/road_view.hpp"
 
 namespace atlas {
