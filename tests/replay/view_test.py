@@ -16,8 +16,9 @@ import yaml
 from whole_run import LIMIT_S, WholeRun, run
 
 RVIZ = Path(__file__).resolve().parents[2] / "rviz"
-TYPES = {"rviz/PointCloud2": "sensor_msgs/PointCloud2", "rviz/MarkerArray": "visualization_msgs/MarkerArray", "rviz/Map": "nav_msgs/OccupancyGrid",
-         "rviz/Path": "nav_msgs/Path", "rviz/Image": "sensor_msgs/Image", "rviz/Camera": "sensor_msgs/Image"}
+TYPES = {"rviz/PointCloud2": "sensor_msgs/PointCloud2", "rviz/MarkerArray": "visualization_msgs/MarkerArray",
+         "rviz/Map": "nav_msgs/OccupancyGrid", "rviz/Path": "nav_msgs/Path",
+         "rviz/Image": "sensor_msgs/Image", "rviz/Camera": "sensor_msgs/Image"}
 DELETE_ALL = 3  # visualization_msgs/Marker
 
 
