@@ -15,12 +15,6 @@ namespace {
 using namespace grid_scene;
 constexpr Stamp kStart = 1'500'000'000 * kSecond;
 
-Scene carAhead() {
-  Scene scene;
-  scene.actors.push_back({"car", 4.4, 1.8, 0.15, 1.5, stands(14.0, 0.0)});
-  return scene;
-}
-
 /// A scan as it comes from the de-skew, in one batch.
 BatchedSweepPtr sweepOf(const Scene& scene, int lidar, double t_s) {
   const Stamp stamp = kStart + fromSeconds(t_s);

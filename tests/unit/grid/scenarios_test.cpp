@@ -11,7 +11,8 @@
 namespace atlas::grid_scene {
 namespace {
 
-/// Figures whose limit is not met; the numbers stand in tests/bench/BENCHMARK.md.
+/// Figures whose limit is not met: their scenario is reported as skipped. The numbers stand in
+/// tests/bench/BENCHMARK.md.
 const std::set<std::string>& knownMisses() {
   static const std::set<std::string> names = {"S1 bicycle and car apart, gap 0.4 m",
                                               "S1 velocity of the bicycle, gap 0.4 m",
@@ -31,12 +32,18 @@ class Scenarios : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(All, Scenarios, ::testing::ValuesIn(scenarioNames()));
 
 TEST_P(Scenarios, KeepsItsLimits) {
+  std::string missed;
   for (const Figure& figure : runScenario(GetParam(), FilterMode::kLattice, 1)) {
     const std::string name = figure.scenario + " " + figure.name;
-    if (knownMisses().count(name) > 0) continue;
+    if (knownMisses().count(name) > 0) {
+      EXPECT_FALSE(figure.passes()) << name << " is met now: take it out of knownMisses()";
+      missed += (missed.empty() ? "" : ", ") + name;
+      continue;
+    }
     EXPECT_TRUE(figure.passes()) << name << ": " << figure.value << " " << figure.unit << ", limit "
                                  << figure.limit;
   }
+  if (!missed.empty()) GTEST_SKIP() << "not met: " << missed;
 }
 
 double valueOf(const std::vector<Figure>& figures, const std::string& name) {

@@ -200,6 +200,12 @@ PlacedGrid StereoEye::look(const Scene& scene, const SensorSet& sensors, double 
   return {grid, Pose{fromRollPitchYaw({0.0, 0.0, yaw}), {from.x(), from.y(), 0.0}}};
 }
 
+Scene carAhead() {
+  Scene scene;
+  scene.actors.push_back({"car", 4.4, 1.8, 0.15, 1.5, stands(14.0, 0.0)});
+  return scene;
+}
+
 OccupancyParams paramsFor(FilterMode mode) {
   OccupancyParams params;
   params.road_below_imu_m = kBaseHeight_m;

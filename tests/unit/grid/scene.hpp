@@ -66,6 +66,9 @@ class StereoEye {
   StereoGround ground_;
 };
 
+/// Nothing but a car that stands 14 m ahead.
+[[nodiscard]] Scene carAhead();
+
 /// Parameters of the chain for these sensors.
 [[nodiscard]] OccupancyParams paramsFor(FilterMode mode);
 
