@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "files/map_colours.hpp"
 
-#include "atlas/camera/intrinsics_cache.hpp"
+#include "atlas/sensor/same_calibration.hpp"
 
 namespace atlas {
 
@@ -58,7 +58,7 @@ Outcome<std::vector<ColouredPoint>> MapColours::coloured(std::size_t camera, con
 
 PixelBearings* MapColours::bearingsOf(std::size_t camera, const CameraInfo& info) {
   Camera& known = cameras_.at(camera);
-  if (known.bearings && IntrinsicsCache::sameCalibration(known.info, info)) return known.bearings.get();
+  if (known.bearings && sameCalibration(known.info, info)) return known.bearings.get();
   const Outcome<CameraModel> model = CameraModel::fromInfo(info);
   known.info = info;
   known.bearings = model ? std::make_unique<PixelBearings>(*model) : nullptr;

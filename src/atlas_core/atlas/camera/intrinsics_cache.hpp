@@ -7,6 +7,7 @@
 
 #include "atlas/camera/camera_model.hpp"
 #include "atlas/camera/projector.hpp"
+#include "atlas/sensor/same_calibration.hpp"
 
 namespace atlas {
 
@@ -30,11 +31,6 @@ class IntrinsicsCache {
                 : Outcome<Intrinsics>(model.reason());
     }
     return intrinsics_;
-  }
-
-  static bool sameCalibration(const CameraInfo& a, const CameraInfo& b) {
-    return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model &&
-           a.distortion == b.distortion && a.K == b.K;
   }
 
  private:

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "atlas/sensor/same_calibration.hpp"
+
 namespace atlas {
 namespace {
 
@@ -30,9 +32,8 @@ CameraInfo scaled(CameraInfo info, int width_px) {
   return info;
 }
 
-bool sameCalibration(const CameraInfo& a, const CameraInfo& b) {
-  return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model &&
-         a.distortion == b.distortion && a.K == b.K && a.R == b.R && a.P == b.P;
+bool sameRectification(const CameraInfo& a, const CameraInfo& b) {
+  return sameCalibration(a, b) && a.R == b.R && a.P == b.P;
 }
 
 cv::Mat resized(const cv::Mat& pixels, const CameraInfo& info) {
@@ -149,7 +150,8 @@ StereoStage::Setup::Setup(const StereoStageParams& p, const CameraInfo& left_inf
 std::optional<Reason> StereoStage::prepare() {
   if (!left_info_ || !right_info_ || left_info_->K[0] == 0.0 || right_info_->K[0] == 0.0)
     return Reason::kMissingIntrinsics;
-  if (setup_ && sameCalibration(setup_->left, *left_info_) && sameCalibration(setup_->right, *right_info_))
+  if (setup_ && sameRectification(setup_->left, *left_info_) &&
+      sameRectification(setup_->right, *right_info_))
     return std::nullopt;
   const Outcome<Pose> left = rig_.T_imu(left_info_->frame), right = rig_.T_imu(right_info_->frame);
   std::optional<Pose> T_left_right;
